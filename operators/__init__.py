@@ -72,8 +72,10 @@ def _do(way: str, module: ModuleType) -> None:
 
     classes = [
         each
-        for name, each in vars(module).items()
-        if name.startswith("KEYMARK_") and each.__module__ == module.__name__
+        for each in vars(module).values()
+        if isinstance(each, type)
+        and each.__name__.startswith("KEYMARK_")
+        and each.__module__ == module.__name__
     ]
     by_classes = dict(zip(("register", "unregister"), register_classes_factory(classes), strict=True))
     attached = [path.split(".") for path in getattr(module, "ATTACHED", ())]

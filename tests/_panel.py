@@ -4,6 +4,7 @@ Every property, operator, icon and entry of a menu that is drawn must exist, and
 its tooltip. What is folded counts nothing; of a list, its rows count as one control.
 """
 
+import inspect
 from collections.abc import Callable, Iterator
 from types import SimpleNamespace
 from typing import Any
@@ -113,8 +114,8 @@ def _own(kind: Any, layout: Layout) -> Any:
 
     class Own:
         def __getattr__(self, name: str) -> Any:
-            value = getattr(kind, name)
-            return value.__get__(self) if type(value).__name__ == "function" else value
+            value, declared = getattr(kind, name), inspect.getattr_static(kind, name)
+            return value.__get__(self) if type(declared).__name__ == "function" else value
 
         column = property(lambda self: lambda: kind.column(self))
 

@@ -2,10 +2,10 @@
 
 Tangent steps act from the right, `R Exp(step)`: the step is expressed in the rotated (child) frame.
 References: Solà, Deray, Atchuthan (2018), *A micro Lie theory for state estimation in robotics*.
+SciPy is imported where it is used: what a body is, Blender's panels know without it.
 """
 
 import numpy as np
-import scipy  # its parts are loaded where they are used: the looks at a clip need none
 
 from ..arrays import Array, BoolArray
 from ..numerics.vectors import unit
@@ -13,15 +13,19 @@ from ..numerics.vectors import unit
 
 def exponential(rotation_vector: Array) -> Array:
     """Rotation matrices (..., 3, 3) of rotation vectors (..., 3) [rad]: Solà (2018), eq. 132."""
+    from scipy.spatial.transform import Rotation
+
     vectors = np.asarray(rotation_vector, dtype=np.float64)
-    matrices: Array = scipy.spatial.transform.Rotation.from_rotvec(vectors.reshape(-1, 3)).as_matrix()
+    matrices: Array = Rotation.from_rotvec(vectors.reshape(-1, 3)).as_matrix()
     return matrices.reshape(*vectors.shape[:-1], 3, 3)
 
 
 def logarithm(rotation: Array) -> Array:
     """Rotation vectors (..., 3) of matrices (..., 3, 3), of angle at most π: Solà (2018), eq. 133."""
+    from scipy.spatial.transform import Rotation
+
     matrices = np.asarray(rotation, dtype=np.float64)
-    vectors: Array = scipy.spatial.transform.Rotation.from_matrix(matrices.reshape(-1, 3, 3)).as_rotvec()
+    vectors: Array = Rotation.from_matrix(matrices.reshape(-1, 3, 3)).as_rotvec()
     return vectors.reshape(*matrices.shape[:-2], 3)
 
 
@@ -87,10 +91,10 @@ def smallest(source: Array, target: Array) -> Array:
 
 def to_quaternions(rotation: Array) -> Array:
     """Unit quaternions (..., 4) in the order w, x, y, z, with w ≥ 0."""
+    from scipy.spatial.transform import Rotation
+
     matrices = np.asarray(rotation, dtype=np.float64)
-    xyzw: Array = scipy.spatial.transform.Rotation.from_matrix(matrices.reshape(-1, 3, 3)).as_quat(
-        canonical=True
-    )
+    xyzw: Array = Rotation.from_matrix(matrices.reshape(-1, 3, 3)).as_quat(canonical=True)
     return xyzw[:, [3, 0, 1, 2]].reshape(*matrices.shape[:-2], 4)
 
 

@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.ndimage import convolve1d, maximum_filter1d
 
 from ..arrays import Array
 from ..body import rotations
@@ -81,6 +80,8 @@ def smooth_above(needed: Array, time_s: Array, reach_s: float) -> Array:
     """A smooth signal (F,) nowhere below the needed one: its running maximum over the reach, smoothed."""
     if len(needed) < 3 or not needed.any():
         return np.array(needed)
+    from scipy.ndimage import convolve1d, maximum_filter1d
+
     frames = max(1, int(np.ceil(reach_s / usual_step(time_s))))
     highest = maximum_filter1d(needed, 2 * frames + 1, mode="nearest")
     window = np.hanning(2 * frames + 3)[1:-1]

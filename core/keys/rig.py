@@ -9,7 +9,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from ..arrays import Array, IndexArray
 
@@ -145,6 +144,8 @@ def channel_count(mode: str) -> int:
 
 def rotation_matrices(channels: Array, mode: str) -> Array:
     """Rotations (F, 3, 3) of channels (F, C) in a rotation mode, as Blender evaluates them."""
+    from scipy.spatial.transform import Rotation
+
     if mode == NO_TURN:
         return np.broadcast_to(np.eye(3), (len(channels), 3, 3))
     if mode == "QUATERNION":

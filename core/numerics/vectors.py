@@ -1,7 +1,6 @@
 """Directions in space, and signals over time."""
 
 import numpy as np
-import scipy
 
 from ..arrays import Array, BoolArray, IndexArray
 
@@ -39,9 +38,9 @@ def gaussian(values: Array, deviation: float, truncate: float = 4.0) -> Array:
     """Values (F, ...) under a Gaussian of a `deviation` in rows, which ends after `truncate` deviations."""
     if len(values) < 2 or not deviation > 0.0:
         return values
-    return np.asarray(
-        scipy.ndimage.gaussian_filter1d(values, deviation, axis=0, mode="nearest", truncate=truncate)
-    )
+    from scipy.ndimage import gaussian_filter1d
+
+    return np.asarray(gaussian_filter1d(values, deviation, axis=0, mode="nearest", truncate=truncate))
 
 
 def weighted_median(values: Array, weights: Array) -> float:

@@ -4,7 +4,6 @@ from dataclasses import dataclass
 from typing import Annotated
 
 import numpy as np
-import scipy
 
 from ..arrays import Array, IndexArray
 from ..body.posture import Posture, headings_rad, yawed_at
@@ -83,11 +82,12 @@ def with_turns(prior: Posture, keyframes: IndexArray, turns: IndexArray) -> Post
     """
     if not turns.any():
         return prior
+    from scipy.interpolate import PchipInterpolator
+
     wound = np.concatenate([[0.0], np.cumsum(heading_steps_rad(prior[keyframes]))])
     more = np.concatenate([[0.0], np.cumsum(FULL_TURN * turns)])
     frame = np.clip(np.arange(prior.batch[0]), keyframes[0], keyframes[-1])
-    cubic = scipy.interpolate.PchipInterpolator
-    before, after = (cubic(keyframes, heading)(frame) for heading in (wound, wound + more))
+    before, after = (PchipInterpolator(keyframes, heading)(frame) for heading in (wound, wound + more))
     added = after - before
     # Whole turns are none: far from those added the interpolation stays as it is, to the last digit.
     added -= FULL_TURN * np.round(added / FULL_TURN)

@@ -1,25 +1,31 @@
 """Make the performer's armature: from a body height, from lengths, or measured in the footage."""
 
 import bpy
-from bpy.types import Context, Event
+from bpy.types import Context, Event, Operator, PropertyGroup
 
 from ...core.body.actor import Actor
+from ...core.body.kinematics import Body
+from ..bridge.armature import set_lengths
+from ..bridge.footage import read_camera
+from ..bridge.pose import write_posture
 from ..follow.evidence import scene_evidence
-from ..shell.base_operator import BaseOperator, any_actor, bones_editable, camera, footage, idle, warn
-from ..shell.fields import SKIP_SAVE, Switch, Vector
+from ..shell import need
+from ..shell.base_operator import BaseOperator, operator, warn
+from ..shell.fields import SKIP_SAVE, Pixel, Switch, Vector
 from ..shell.footage_view import ClickSequence, FootageRequest
 from ..shell.notes import give_notices
 from ..shell.results import reading_of
 from ..shell.take_state import TakeState
 from ..shell.takes import active_take, ensure_take, find_take, footage_of
 from .properties import Stature, panel_lengths
+from .take_actor import has_keyframes, performers_stance, restore_actor, size_actor
 
 
 class KEYMARK_OT_build_actor(Stature, BaseOperator, bpy.types.Operator):
     """Build an armature of the performer's height and stand it where the performer is in this frame"""
 
     bl_label = "Build Actor"
-    requirements = (bones_editable, idle)
+    requirements = (need.bones_editable, need.idle)
 
     place: Switch(
         "Stand in the Footage",
@@ -36,10 +42,6 @@ class KEYMARK_OT_build_actor(Stature, BaseOperator, bpy.types.Operator):
 
     def run(self, context: Context) -> None:
         """Build or resize the actor, stand it in the footage, and report which."""
-        from ...core.body.kinematics import Body
-        from ..bridge.pose import write_posture
-        from .take_actor import has_keyframes, performers_stance, size_actor
-
         body = Body(Actor.from_stature(self.given_stature()))
         take = ensure_take(context.scene)
         had_actor = size_actor(context, take, body)
@@ -60,43 +62,28 @@ class KEYMARK_OT_build_actor(Stature, BaseOperator, bpy.types.Operator):
         self.report({"INFO"}, sentence)
 
 
-class KEYMARK_OT_apply_lengths(BaseOperator, bpy.types.Operator):
+@operator("Apply Lengths", need.any_actor, need.bones_editable, need.idle)
+def apply_lengths(operator: Operator, context: Context, take: PropertyGroup) -> None:
     """Give the actor these lengths, or bring a deleted one back; its pose, keyframes and motion stay"""
-
-    bl_label = "Apply Lengths"
-    requirements = (any_actor, bones_editable, idle)
-
-    def run(self, context: Context) -> None:
-        """Bring back an actor that is gone; resize the bones of one that is there."""
-        from ...core.body.kinematics import Body
-        from ..bridge.armature import set_lengths
-        from .take_actor import restore_actor
-
-        take = active_take(context.scene)
-        if TakeState(take).has_lost_actor:
-            restore_actor(context, take)
-            self.report({"INFO"}, "The actor is back, with its keyframes and its motion")
-            return
-        set_lengths(take.armature, Body(Actor(panel_lengths(take.lengths))))
-        give_notices(take, "actor", "lengths")
-        self.report({"INFO"}, "The actor has these lengths now; keyframes and pose are kept")
+    if TakeState(take).has_lost_actor:
+        restore_actor(context, take)
+        operator.report({"INFO"}, "The actor is back, with its keyframes and its motion")
+        return
+    set_lengths(take.armature, Body(Actor(panel_lengths(take.lengths))))
+    give_notices(take, "actor", "lengths")
+    operator.report({"INFO"}, "The actor has these lengths now; keyframes and pose are kept")
 
 
 class KEYMARK_OT_measure_actor(ClickSequence, Stature, BaseOperator, bpy.types.Operator):
     """Click on the top of the head and the floor between the feet, in a frame where the performer stands"""
 
     bl_label = "Measure Actor"
-    requirements = (footage, camera, bones_editable, idle)
+    requirements = (need.footage, need.camera, need.bones_editable, need.idle)
 
     head_pixel: Vector(
         "Top of Head", "In pixels of the footage from its top left corner", size=2, options=SKIP_SAVE
     )
-    floor_pixel: Vector(
-        "Floor",
-        "The floor between the feet, in pixels of the footage from its top left corner",
-        size=2,
-        options=SKIP_SAVE,
-    )
+    floor_pixel: Pixel("Floor", "The floor between the feet")
     arms_stretched: Switch(
         "Arms Stretched Sideways",
         "The performer holds both arms out sideways, so that their lengths are measured as well",
@@ -128,14 +115,18 @@ class KEYMARK_OT_measure_actor(ClickSequence, Stature, BaseOperator, bpy.types.O
 
     def run(self, context: Context) -> None:
         """Measure the performer, resize the actor, and stand it there unless it has keyframes."""
-        from ..bridge.pose import write_posture
-        from ..bridge.take_from_scene import frame_in_footage, measured_in_frame
-        from .take_actor import has_keyframes, size_actor
+        from ...core.estimate.actor_measure import measure_standing
+        from ..bridge.take_from_scene import frame_in_footage
 
         take = active_take(context.scene)
         frame = frame_in_footage(footage_of(context.scene, take), scene_evidence(take), reading_of(take))
         head, floor = tuple(self.head_pixel), tuple(self.floor_pixel)
-        measured = measured_in_frame(frame, self.given_stature(), head, floor, self.arms_stretched)
+        camera, stature_m = read_camera(frame.footage, frame.clip_frames[[frame.index]]), self.given_stature()
+        regions = frame.regions() if frame.styles else None
+        keypoints = frame.keypoints(Body(Actor.from_stature(stature_m))).frame(frame.index)
+        measured = measure_standing(
+            camera, 0, stature_m, head, floor, regions, frame.segments, self.arms_stretched, keypoints
+        )
         size_actor(context, take, measured.body)
         take.stature = self.stature
         if not has_keyframes(take):

@@ -18,20 +18,11 @@ class KEYMARK_PT_actor(StepPanel, bpy.types.Panel):
     bl_label = "Performer"
     step = "actor"
     options = "KEYMARK_PT_actor_options"
-
-    @classmethod
-    def summary(cls, state: TakeState) -> str:
-        take = state.take
-        return followed(take) if take.armature is None else f"{take.stature:.4g} m"
-
-    @classmethod
-    def is_wrong(cls, state: TakeState) -> bool:
-        armature = state.take.armature
-        return state.has_lost_actor or (armature is not None and not is_actor(armature))
-
-    @classmethod
-    def action(cls, state: TakeState) -> tuple[str, str]:
-        return ("keymark.build_actor", "Build Actor") if state.take.armature is None else ("", "")
+    summary = staticmethod(lambda s: f"{s.take.stature:.4g} m" if s.take.armature else followed(s.take))
+    is_wrong = staticmethod(
+        lambda s: s.has_lost_actor or (s.take.armature is not None and not is_actor(s.take.armature))
+    )
+    action = staticmethod(lambda s: ("", "") if s.take.armature else ("keymark.build_actor", "Build Actor"))
 
     def draw_step(self, context: Context, body: UILayout, state: TakeState) -> None:
         take = state.take

@@ -1,7 +1,6 @@
 """A take's actor in its scene: built, sized, placed, and brought back with its keyframes and its motion."""
 
 from contextlib import suppress
-from typing import TYPE_CHECKING
 
 import bpy
 from bpy.types import Context, Object, PropertyGroup, Scene
@@ -9,8 +8,9 @@ from mathutils import Matrix, Vector
 
 from ...core.body.actor import Actor
 from ...core.body.kinematics import Body
+from ...core.body.posture import Posture
 from ...core.errors import InputError
-from ..bridge.actions import action_of, assign_action
+from ..bridge.actions import action_of
 from ..bridge.actor_bones import hips_at_rest, is_actor
 from ..bridge.armature import build_armature, set_lengths
 from ..follow.evidence import scene_evidence
@@ -20,16 +20,9 @@ from ..shell.take_state import TakeState
 from ..shell.takes import footage_of
 from .properties import LENGTHS, SIDED, panel_lengths
 
-if TYPE_CHECKING:
-    from ...core.body.posture import Posture
-
 
 def restore_actor(context: Context, take: PropertyGroup) -> None:
-    """Bring a take's actor back into the scene, selected.
-
-    One that was deleted in the viewport is still in the file. Else an armature that the take's Actions move
-    is the actor; else one is built of the panel's lengths, its hips at rest where keys expect them.
-    """
+    """Bring an actor back, selected: the deleted one, one that its Actions move, or one of these lengths."""
     scene = context.scene
     if take.armature is not None:
         if TakeState(take).actor is None:
@@ -52,15 +45,8 @@ def new_actor(context: Context, take: PropertyGroup, body: Body) -> Object:
         away = Vector(take.rest_hips) - Vector(hips_at_rest(armature_object))
         armature_object.data.transform(Matrix.Translation(away))
     select_alone(context, armature_object)
-    take.armature = armature_object  # its update calls `reattach` and `show_lengths`
+    take.armature = armature_object  # its update animates it and calls `show_lengths`
     return armature_object
-
-
-def reattach(take: PropertyGroup) -> None:
-    """Let a take's motion, or else its keyframes, animate an actor that nothing animates yet."""
-    actions = [action for action in (take.motion_action, take.keyframe_action) if action is not None]
-    if take.armature is not None and actions and action_of(take.armature) is None:
-        assign_action(take.armature, actions[0])
 
 
 def leave_mode(context: Context) -> None:
@@ -104,7 +90,7 @@ def show_lengths(take: PropertyGroup, body: Body) -> None:
         setattr(lengths, own, segments[name])
 
 
-def performers_stance(scene: Scene, take: PropertyGroup, body: Body) -> "tuple[Posture, bool] | None":
+def performers_stance(scene: Scene, take: PropertyGroup, body: Body) -> tuple[Posture, bool] | None:
     """Posture of a performer who stands in the footage's current frame, and if evidence located them."""
     from ..bridge.take_from_scene import frame_in_footage, posed_standing
 

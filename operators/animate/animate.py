@@ -2,15 +2,15 @@
 
 from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import bpy
 from bpy.types import Context, Event, Operator, Scene
 
 from ...core.errors import InputError
-from ...core.progress import Progress, stretch
+from ...core.progress import Job, Progress, stretch
 from ..actor.properties import Stature
 from ..animate import FILE, NOTHING, RIGIFY
+from ..bridge.character.rigify_human import has_rigify
 from ..character.characters import candidates
 from ..character.retarget import keep_retargeted, retarget_take
 from ..finish.bake_motion import bake, keep_baked
@@ -18,57 +18,38 @@ from ..follow.load_keypoints import chosen_network, draw_network
 from ..footage.load_footage import PATTERNS, load_into_take
 from ..footage.properties import Part, draw_part
 from ..reconstruct.reconstruct import PreviewedJob, keep_motion, reconstruct_take
-from ..shell.base_operator import (
-    actor,
-    all_colors,
-    anything_to_follow,
-    bones_editable,
-    call,
-    chosen_file,
-    footage,
-    idle,
-    of_take,
-    reported,
-    two_keyframes,
-)
-from ..shell.fields import HIDDEN, SKIP_SAVE, Choice, Switch, Text
+from ..shell import need
+from ..shell.base_operator import call, chosen_file, reported
+from ..shell.fields import HIDDEN, SKIP_SAVE, Choice, File, Switch, Text
 from ..shell.panel import draw_sentence
 from ..shell.results import EXTENSION
 from ..shell.take_state import TakeState
 from ..shell.takes import active_take, find_take
 
-if TYPE_CHECKING:
-    from ...core.progress import Job
+outdated = need.of_take(lambda state: state.is_outdated, "Everything is up to date")
 
 
-outdated = of_take(lambda state: state.is_outdated, "Everything is up to date")
-
-
-def update_take(operator: PreviewedJob, scene: Scene) -> "Job[list[str]]":
-    """Make anew what is outdated of the active take, each part in the scene once it is complete.
-
-    Returns:
-        A line on each part.
-    """
-    said = []
+def update_take(operator: PreviewedJob, scene: Scene) -> Job[list[str]]:
+    """Make anew what is outdated of the active take, each part in the scene once complete; a line on each."""
+    lines = []
     if TakeState(active_take(scene)).motion_is_outdated:
         made, judged = yield from stretch(reconstruct_take(operator, scene), 0.0, 0.6)
         operator.unwatch()  # the motion takes the place of its preview
-        said.append(keep_motion(operator, scene, made, judged))
+        lines.append(keep_motion(operator, scene, made, judged))
     if TakeState(active_take(scene)).final_is_outdated:
-        said.append(keep_baked(operator, scene, (yield from stretch(bake(scene), 0.6, 0.7))))
+        lines.append(keep_baked(operator, scene, (yield from stretch(bake(scene), 0.6, 0.7))))
     chosen, count = active_take(scene).active_character, len(active_take(scene).characters)
     for index in range(count):
         take = active_take(scene)
         if any(map(TakeState(take).of_earlier, take.characters[index].results)):
             take.active_character = index
             start, end = (0.7 + 0.3 * at / count for at in (index, index + 1))
-            said.append(
+            lines.append(
                 keep_retargeted(operator, scene, (yield from stretch(retarget_take(scene), start, end)))
             )
     active_take(scene).active_character = chosen
     yield Progress("Updated", 1.0)
-    return said
+    return lines
 
 
 class StagedOperator(PreviewedJob):
@@ -92,9 +73,17 @@ class KEYMARK_OT_update(StagedOperator, bpy.types.Operator):
     """Make the motion of your corrections, and bake and retarget it again where that was done before"""
 
     bl_label = "Update"
-    requirements = (outdated, footage, actor, anything_to_follow, all_colors, two_keyframes, idle)
+    requirements = (
+        outdated,
+        need.footage,
+        need.actor,
+        need.anything_to_follow,
+        need.all_colors,
+        need.two_keyframes,
+        need.idle,
+    )
 
-    def start(self, scene: Scene) -> "Job[list[str]]":
+    def start(self, scene: Scene) -> Job[list[str]]:
         return (yield from update_take(self, scene))
 
 
@@ -114,13 +103,11 @@ _items: list[tuple[str, str, str, str, int]] = []  # Blender keeps no copy of th
 
 def _characters(_operator: Operator, context: Context | None) -> list[tuple[str, str, str, str, int]]:
     """Those in the scene, then a Rigify human, a file, and none at all."""
-    from ..bridge.character.rigify_human import has_rigify
-
     there = [] if context is None else candidates(context.scene, context.view_layer)
     rows = [(each.name, each.name, "This armature of the scene", "ARMATURE_DATA") for each in there]
     if has_rigify():
-        said = "A Rigify rig of the performer's size; enables the add-on Rigify, which comes with Blender"
-        rows.append((RIGIFY, "Rigify Human", said, "OUTLINER_OB_ARMATURE"))
+        words = "A Rigify rig of the performer's size; enables the add-on Rigify, which comes with Blender"
+        rows.append((RIGIFY, "Rigify Human", words, "OUTLINER_OB_ARMATURE"))
     rows.append((FILE, "From a File", "Asks for the character's file next", "FILE_FOLDER"))
     rows.append((NOTHING, "None", "The performer's armature alone", "X"))
     _items[:] = [(*row, number) for number, row in enumerate(rows)]
@@ -131,21 +118,19 @@ class KEYMARK_OT_animate(Stature, Part, StagedOperator, bpy.types.Operator):
     """From a clip and the performer's height to a moving character; every step can be corrected afterwards"""
 
     bl_label = "Animate"
-    requirements = (bones_editable, idle)
+    requirements = (need.bones_editable, need.idle)
 
-    filepath: Text(
-        "File Path", "A video, or one image of a numbered sequence", subtype="FILE_PATH", options=SKIP_SAVE
-    )
+    filepath: File("A video, or one image of a numbered sequence")
     character: Choice("Character", "Who performs the motion", items=_characters, options=SKIP_SAVE)
     character_file: Text(
         "Character File",
         "File of the character, and after a colon the name of its armature where it has several",
-        options={"SKIP_SAVE", "HIDDEN"},
+        options={"HIDDEN", "SKIP_SAVE"},
     )
     turn: Choice("Turn Picture", "By how much the picture is turned first", items=TURNS, options=SKIP_SAVE)
-    asking: Text(options={"SKIP_SAVE", "HIDDEN"})
-    clip: Text(options={"SKIP_SAVE", "HIDDEN"})
-    problem: Text("Problem", "Why what was chosen last cannot be animated", options={"SKIP_SAVE", "HIDDEN"})
+    asking: Text(options={"HIDDEN", "SKIP_SAVE"})
+    clip: Text(options={"HIDDEN", "SKIP_SAVE"})
+    problem: Text("Problem", "Why what was chosen last cannot be animated", options={"HIDDEN", "SKIP_SAVE"})
     filter_glob: Text(default=PATTERNS, options={"HIDDEN", "SKIP_SAVE"})
     filter_folder: Switch(default=True, options=HIDDEN)
 
@@ -169,9 +154,7 @@ class KEYMARK_OT_animate(Stature, Part, StagedOperator, bpy.types.Operator):
         clip, file = (
             (self.filepath, self.character_file) if self.asking == CLIP else (self.clip, self.filepath)
         )
-        typed = {
-            name: getattr(self, name) for name in ("stature", "character", "turn", *Part.__annotations__)
-        }
+        typed = {one: getattr(self, one) for one in ("stature", "character", "turn", *Part.__annotations__)}
         with reported(self):
             try:
                 call(bpy.ops.keymark.animate, "INVOKE_DEFAULT", filepath=clip, character_file=file, **typed)
@@ -199,7 +182,7 @@ class KEYMARK_OT_animate(Stature, Part, StagedOperator, bpy.types.Operator):
             body.prop(self, "turn")
             draw_part(body, self)
 
-    def start(self, scene: Scene) -> "Job[list[str]]":
+    def start(self, scene: Scene) -> Job[list[str]]:
         """Load the clip, and go on; what is complete stays in the scene where the job ends early."""
         from ...core.take.description import keypoints_beside
         from .stages import animate, follow_found_file, turned_copy
@@ -208,7 +191,10 @@ class KEYMARK_OT_animate(Stature, Part, StagedOperator, bpy.types.Operator):
         path = chosen_file(self, "a video, or one image of a numbered sequence")
         # What is wrong with a network is said before anything changes.
         network = chosen_network() if keypoints_beside(path) is None else None
-        _keep_folder(path.parent)
+        kept = _folder_file()
+        if kept is not None:
+            with suppress(OSError, ValueError):
+                kept.write_text(str(path.parent), encoding="utf-8")
         if self.turn not in ("AUTO", "0"):
             path = turned_copy(path, int(self.turn))
         there = find_take(scene)
@@ -234,10 +220,3 @@ def _last_folder() -> Path:
         if kept.is_dir():
             return kept
     return Path.home()
-
-
-def _keep_folder(folder: Path) -> None:
-    file = _folder_file()
-    if file is not None:
-        with suppress(OSError, ValueError):
-            file.write_text(str(folder), encoding="utf-8")

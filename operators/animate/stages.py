@@ -9,12 +9,15 @@ import bpy
 import numpy as np
 from bpy.types import Context, Object, Operator, PropertyGroup, Scene
 
+from ...core.camera.camera import Lens
 from ...core.errors import InputError
 from ...core.files.fields import listed
+from ...core.files.json_file import write_atomically
 from ...core.progress import Job, Progress, stretch
 from ...core.take.conversion_settings import CharacterFile
 from ..actor.take_actor import size_actor
 from ..bridge.actor_bones import moved_by
+from ..bridge.character.import_character import import_character
 from ..bridge.footage import still_camera
 from ..bridge.footage_camera import set_still_pose
 from ..character.add_character import add_rigify_character
@@ -26,7 +29,8 @@ from ..follow.load_keypoints import Detected, follow_file, keep_detected, keypoi
 from ..footage.found_camera import is_found, write_fit
 from ..footage.load_footage import lens_is_guess, load_into_take
 from ..keyframes.pose_all import keep_poses
-from ..keyframes.scene_session import SceneSession, clip_session
+from ..keyframes.scene_session import SceneSession, read_session
+from ..library.registry import named_libraries
 from ..reconstruct.reconstruct import PreviewedJob, judge, keep_motion
 from ..shell.take_state import TakeState
 from ..shell.takes import active_take, footage_of, take_by_identifier
@@ -53,7 +57,7 @@ def animate(
     file: str,
     turns: bool = True,
     network: "Network | None" = None,
-) -> "Job[list[str]]":
+) -> Job[list[str]]:
     """Go from the active take's clip all the way; each stage's result is in the scene once it is complete.
 
     `turns`: a picture that is on its side or upside down is turned; `network` looks beside Keymark's own.
@@ -68,19 +72,19 @@ def animate(
 
     take = active_take(scene)
     take.stature = stature_m
-    said: list[str] = []
+    lines: list[str] = []
     started = yield from stretch(_clip_session(scene, take, character, file, network), 0.0, 0.02)
     clip = footage_of(scene, take).path
     turns = turns and can_turn(clip)
 
-    def keep(stage: str, session: "Session") -> "Job[object] | None":
+    def keep(stage: str, session: "Session") -> Job[object] | None:
         if turns:
             require_upright(stage, session)
         made = replace(started, session=session)
         if stage == "reconstruct":
-            return _keep_motion(operator, scene, made, said)
+            return _keep_motion(operator, scene, made, lines)
         if stage in KEPT and session.made[stage] is not None:
-            said.append(KEPT[stage](operator, scene, made))
+            lines.append(KEPT[stage](operator, scene, made))
         if stage == "pose":
             found = active_take(scene)
             if found.live_preview:
@@ -91,7 +95,7 @@ def animate(
         yield from stretch(reach(started.session, "retarget", None, keep), 0.02, VIEWED)
     except PictureTurnedError as turned:
         turns = False
-        said.append(f"The picture is turned by {turned.turn_deg} degrees clockwise: people are upright so")
+        lines.append(f"The picture is turned by {turned.turn_deg} degrees clockwise: people are upright so")
         load_into_take(bpy.context, turned_copy(clip, turned.turn_deg), False)
         again = _clip_session(scene, active_take(scene), character, file, network)
         started = yield from stretch(again, DETECTED, DETECTED)
@@ -102,16 +106,11 @@ def animate(
     overlays.only_character = bool(TakeState(active_take(scene)).results)
     for evidence in ("observed", "predicted", "keypoints"):  # whoever doubts shows it
         setattr(overlays, f"show_{evidence}", False)
-    return said
+    return lines
 
 
 def turned_copy(clip: Path, turn_deg: int) -> Path:
-    """A copy of a clip beside it that is shown turned clockwise; nothing is coded anew.
-
-    Raises:
-        InputError: It is no MP4 or QuickTime file.
-    """
-    from ...core.files.json_file import write_atomically
+    """A copy beside an MP4 or QuickTime clip that is shown turned clockwise; nothing is coded anew."""
     from ...core.video.header import write_turned
 
     copy = clip.with_name(f"{clip.stem}.turned{turn_deg}{clip.suffix}")
@@ -121,11 +120,9 @@ def turned_copy(clip: Path, turn_deg: int) -> Path:
 
 def _clip_session(
     scene: Scene, take: PropertyGroup, character: str, file: str, network: "Network | None"
-) -> "Job[SceneSession]":
+) -> Job[SceneSession]:
     """What is known of a clip: its performer's height, its keypoints if there are any, and about its lens."""
-    from ...core.camera.camera import Lens
     from ...core.session.described import lens_of
-    from ..library.registry_files import named_libraries
 
     footage, matching = footage_of(scene, take), take.matching
     size = (footage.clip.size[0], footage.clip.size[1])
@@ -135,7 +132,7 @@ def _clip_session(
     else:
         lens = Lens(camera.lens_mm, camera.sensor_width_mm, "as it is set", True)
 
-    def retarget(_session: "Session") -> "Job[object]":
+    def retarget(_session: "Session") -> Job[object]:
         yield Progress("Opening the character", 0.0)
         _add_character(bpy.context, character, file)
         return (yield from stretch(retarget_take(scene), 0.1, 1.0))
@@ -143,10 +140,10 @@ def _clip_session(
     bridge: dict[str, Callable[[Session], Job[object]]] = {"finish": lambda _session: bake(scene)}
     if character != NOTHING:
         bridge["retarget"] = retarget
-    return clip_session(
+    return read_session(
         scene,
         take,
-        camera,
+        camera=camera,
         detects=not TakeState(take).has_keypoints,
         network=None if TakeState(take).has_keypoints else network,
         open_lens=lens,
@@ -176,17 +173,17 @@ def _keep_place(_operator: Operator, scene: Scene, made: SceneSession) -> str:
     placed, take = made.session[Placed], take_by_identifier(scene, made.take)
     camera, found = placed.seen.take.camera, placed.camera
     assert found is not None
-    said = camera_in_words(found)
+    words = camera_in_words(found)
     if found.lens.is_known and lens_is_guess(take):
         take.camera.data.lens *= found.lens.lens_mm / take.guessed_lens_mm
         take.guessed_lens_mm = 0.0
     if found.fit is None or not is_found(found.fit):
-        take.camera_findings = f"Camera {said}"
+        take.camera_findings = f"Camera {words}"
     else:
         write_fit(take, found.fit)
     set_still_pose(take.camera, camera)
     size_actor(bpy.context, take, placed.seen.take.body)
-    return f"Camera: {said}"
+    return f"Camera: {words}"
 
 
 def _keep_poses(_operator: Operator, scene: Scene, made: SceneSession) -> str:
@@ -195,18 +192,18 @@ def _keep_poses(_operator: Operator, scene: Scene, made: SceneSession) -> str:
     from ...core.take.steady_camera import followed_camera
     from ..bridge.result_files import set_pose
 
-    said, _ = keep_poses(scene, made)
+    sentence, _ = keep_poses(scene, made)
     take, posed = take_by_identifier(scene, made.take), made.session[Posed]
     if posed.floor_m is not None:
         take.matching.floor, take.matching.floor_height = "HEIGHT", posed.floor_m
     set_pose(take.camera, followed_camera(posed.seen.take, posed.seen.reading), made.frames)
-    return said
+    return sentence
 
 
-def _keep_motion(operator: PreviewedJob, scene: Scene, made: SceneSession, said: list[str]) -> "Job[None]":
+def _keep_motion(operator: PreviewedJob, scene: Scene, made: SceneSession, lines: list[str]) -> Job[None]:
     judged = yield from judge(made)
     operator.unwatch()  # the motion takes the place of its preview
-    said.append(keep_motion(operator, scene, made, judged))
+    lines.append(keep_motion(operator, scene, made, judged))
 
 
 KEPT = {
@@ -245,8 +242,6 @@ def _add_character(context: Context, character: str, file: str) -> None:
 
 def _opened(context: Context, file: str) -> Object:
     """The armature of a character's file, with all that belongs to it in the scene."""
-    from ..bridge.character.import_character import import_character
-
     own = bpy.data.scenes.new("Character")
     try:
         imported = import_character(CharacterFile.parse(bpy.path.abspath(file)), own)
@@ -258,7 +253,7 @@ def _opened(context: Context, file: str) -> Object:
     return imported.armature
 
 
-def _hide_what_stands_before(context: Context, take: PropertyGroup) -> "Job[None]":
+def _hide_what_stands_before(context: Context, take: PropertyGroup) -> Job[None]:
     """Hide, in the view layer, objects of others between the camera and the performer; Alt H shows them."""
     scene, layer = context.scene, context.view_layer
     actor = take.armature

@@ -62,9 +62,6 @@ def recolor_earlier(armature: Armature) -> None:
     color_bones(bone for bone in armature.bones if bone.color.palette == EARLIER[side_of(bone.name)])
 
 
-# --- Similarity transform of an armature object, and where an actor's joints are in the scene
-
-
 def object_space(armature_object: Object) -> Similarity:
     """The object's evaluated transform; InputError if scaled unevenly: limbs would change as they turn."""
     matrix = np.array(evaluated(armature_object).matrix_world, dtype=np.float64)

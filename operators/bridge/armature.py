@@ -214,10 +214,10 @@ ANY_BODY = Body(Actor.from_stature(1.7))  # bone axes are taken from it, and dep
 
 
 def skeleton_bones(armature_object: Object) -> tuple[BoneModel, ...]:
-    """Keymark's bones, parents first, of an armature; InputError where it is none, or lacks some of them.
+    """An actor's bones, parents first, rolled as they are where they rest in a T pose.
 
-    Where the rest pose is a T pose, bones may be rolled about their own length, and their axes are rolled
-    with them. In another rest pose a roll cannot be told from a posed bone, and counts as posed.
+    Raises:
+        InputError: It is no actor's armature.
     """
     if armature_object is None or armature_object.type != "ARMATURE":
         name = "nothing" if armature_object is None else f"'{armature_object.name}'"
@@ -329,10 +329,7 @@ def has_fingers(armature_object: Object) -> bool:
 
 
 def add_fingers(armature_object: Object, body: Body) -> None:
-    """Give an actor bones for its fingers, each of which bends about its X alone, where it has none.
-
-    One from another file, or one that is being edited, stays as it is.
-    """
+    """Give an actor that can be edited bones for its fingers, which bend about X alone, where it has none."""
     data, active = armature_object.data, bpy.context.view_layer.objects.active
     kept = armature_object.library or data.library or data.override_library
     if has_fingers(armature_object) or kept or (active is not None and active.mode not in MODES):

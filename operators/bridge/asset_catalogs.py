@@ -99,12 +99,7 @@ def read_catalogs(file: Path) -> str:
 
 
 def write_asset_blend(path: Path, root: Path, data: BlendData, assets: Iterable[tuple[ID, str]]) -> None:
-    """Write assets, with what they need and nothing else, into a .blend, and their catalogs into a file.
-
-    Both files appear whole, or neither. `root` is the folder of the asset library that `path` lies in, where
-    its catalogs are kept; `assets`, each with its catalog, may be made meanwhile. Raises InputError where the
-    file of catalogs is of another kind or `path` is the open file, ConversionError where none can be written.
-    """
+    """Write assets, made meanwhile, alone into a .blend, and their catalogs; both whole, or neither."""
     if bpy.data.filepath and Path(bpy.data.filepath).resolve() == path.resolve():
         raise InputError(f"{path}: is the open file, of which only assets would be left; name another")
     read_catalogs(root / NAME)  # a sentence on its copy would name a file that is gone by then

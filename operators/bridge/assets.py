@@ -82,11 +82,7 @@ MOTIONS, ACTORS, CHARACTERS = "Keymark", "Keymark Actors", "Keymark Characters"
 
 
 def write_motion_library(path: Path, assets: Iterable[MotionAsset]) -> None:
-    """Write motions as assets into a .blend, and their catalogs into the file beside it, one at a time.
-
-    Each is written twice: as an Action, for any actor; and as an actor that it animates, because only objects
-    can be dragged from an asset browser into a scene. A character's is an Action for that character.
-    """
+    """Write motions into a .blend: as Actions, and as actors, which alone can be dragged from a browser."""
     with own_scene("Motions") as scene:
         write_asset_blend(path, path.parent, bpy.data, _motion_assets(scene, assets))
 

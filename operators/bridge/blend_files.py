@@ -51,9 +51,7 @@ def check_blend(path: Path, what: str, largest_bytes: int | None = None) -> None
         with path.open("rb") as file:
             magic = file.read(8)
     except OSError as error:
-        raise InputError(
-            f"{path}: cannot be read ({error.strerror or error}); it must be a .blend"
-        ) from error
+        raise InputError(f"{path}: cannot be read ({error.strerror or error}); name a .blend") from error
     if largest_bytes is not None and size > largest_bytes:
         raise InputError(
             f"{path}: has {size / 2**20:.0f} MiB; a .blend of {what} has at most {largest_bytes >> 20} MiB"

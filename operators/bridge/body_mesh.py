@@ -35,11 +35,7 @@ BESIDE = 0.2 / 1.75  # faces so near to a marker's edge are cut along it, in sta
 
 
 def build_body_mesh(armature_object: Object, body: Body, markers: Sequence[MarkerStyle]) -> Object:
-    """Add a skin that the armature moves smoothly; returns its object.
-
-    The skin around a marker's segment, from joint to joint, has the marker's color, without shading from
-    lights or view transform beyond what the renderer adds. `trunk` covers pelvis and chest.
-    """
+    """Add a skin that the armature moves, with markers' colors around their segments; returns its object."""
     human, bones = HumanMesh.read(), read_bones(armature_object)
     weights = human.on_bones(SEGMENTS)
     standing = human.fitted(body_joints(body))

@@ -15,6 +15,8 @@ from bpy.types import Action, Object, Scene
 
 from ...core.errors import ConversionError, InputError
 from ...core.files.json_file import write_atomically
+from ...core.take.motion import write_motion
+from .rig import present_frames, shown_motion
 from .scene_frames import showing_action
 
 
@@ -59,7 +61,6 @@ def write_bvh(armature_object: Object, path: Path) -> None:
 
 
 def _written_by(exporter: str, **options: object) -> Callable[[Object, Path], None]:
-    """The writer by an operator such as `export_scene.fbx`."""
     group, name = exporter.split(".")
 
     def write(_: Object, path: Path) -> None:
@@ -70,7 +71,6 @@ def _written_by(exporter: str, **options: object) -> Callable[[Object, Path], No
 
 
 def _write_points(armature_object: Object, path: Path) -> None:
-    """Write the joints of an armature over its scene's frames."""
     from ...core.take import point_files
     from .motions.read_poses import joint_paths
 
@@ -80,9 +80,6 @@ def _write_points(armature_object: Object, path: Path) -> None:
 
 def _write_keymark(armature_object: Object, path: Path) -> None:
     """Write an actor's motion as `motion.json`, which the command line retargets and learns from."""
-    from ...core.take.motion import write_motion
-    from .rig import present_frames, shown_motion
-
     action = armature_object.animation_data.action
     motion = shown_motion(armature_object.users_scene[0], armature_object, action)
     present = present_frames(armature_object, action, motion.fps)
@@ -181,12 +178,7 @@ def export_motion(
     path: Path,
     along: Sequence[Object] = (),
 ) -> None:
-    """Write an actor's or a character's motion over `frames`, first to last, into a whole file or none.
-
-    The objects `along` are written too, where the format has any; nothing else is. Scene, selection and frame
-    are as before afterwards. Raises InputError where the actor is hidden with its collection, ConversionError
-    where the exporter failed, or the file cannot be written.
-    """
+    """Write a motion over `frames`, with objects `along` and nothing else, into a whole file, or raise."""
 
     def write(beside: Path) -> None:
         try:

@@ -1,10 +1,8 @@
 """Curves of Actions: those of hands and feet, and what animates a bone."""
 
-from collections.abc import Collection
-
 import bpy
 import numpy as np
-from bpy.types import Action, ActionChannelbag, FCurve, Object
+from bpy.types import Action, FCurve, Object
 
 from ...core.arrays import Array
 from ...core.body.fingers import FINGER_BONES, finger_turns
@@ -14,18 +12,10 @@ from ...core.body.posture import Posture
 from ...core.body.skeleton import SIDES
 from ...core.feet.natural_extremities import natural_extremities
 from ...core.take.motion import Motion
+from . import keys
 from .actions import assign_action, channelbag_for, curves_of
 from .armature import ActorBones, add_fingers, read_bones, skeleton_bones
-from .keys import (
-    MOTION,
-    Column,
-    copy_as_generated,
-    ensure_fcurve,
-    remove_generated_keys,
-    unchanged_frames,
-    write_keys,
-)
-from .posed_hands import put_right
+from .keys import Column, ensure_fcurve, write_keys
 from .rotation_modes import ALL_PATHS, bone_path, rotation_path, rotation_values
 
 AT_REST = {"rotation_quaternion": (None, 0.0, 0.0, 0.0), "rotation_axis_angle": (0.0, None, None, None)}
@@ -33,9 +23,7 @@ AT_REST = {"rotation_quaternion": (None, 0.0, 0.0, 0.0), "rotation_axis_angle": 
 EXTREMITIES = (*extremity_names(HUMAN), *FINGER_BONES)
 SAME_VALUE = 1e-4  # channels that differ by less [rad, m] are the same
 FEET = tuple(f"foot.{side}" for side in SIDES)
-EXTREMITY_PATHS = {
-    bone_path(name, channel): name for name in EXTREMITIES for channel in (*ALL_PATHS, "location")
-}
+EXTREMITY_PATHS = {bone_path(name, one): name for name in EXTREMITIES for one in (*ALL_PATHS, "location")}
 """Their names by the data paths of their channels."""
 
 
@@ -50,10 +38,9 @@ def posed_extremities(armature_object: Object, keyframe_action: Action | None) -
 def turned_extremities(
     armature_object: Object, action: Action, keyframe_action: Action | None
 ) -> dict[str, Array]:
-    """Frames of the unchanged keys by which a motion has turned hands and feet by itself, by name.
+    """Frames of the unchanged keys, in every curve, by which a motion has turned hands and feet by itself.
 
-    What is posed in the keyframe Action, the motion only copies, but for hands that are seen. A frame has
-    such a key in every curve.
+    What is posed in the keyframe Action, the motion only copies, but for hands that are seen.
     """
     posed = posed_extremities(armature_object, keyframe_action)
     own = {} if keyframe_action is None else _shown_curves(armature_object, keyframe_action)
@@ -61,22 +48,13 @@ def turned_extremities(
     for name, curves in _shown_curves(armature_object, action).items():
         turns = [curve for curve in curves if not curve.data_path.endswith(".location")]
         if turns:
-            frames, *others = (unchanged_frames(curve, MOTION) for curve in turns)
-            for other in others:
+            frames, *further = (keys.unchanged_frames(curve, keys.MOTION) for curve in turns)
+            for other in further:
                 frames = frames[np.isin(np.round(frames, 3), np.round(other, 3))]
             copied = [key.co[0] for curve in own.get(name, ()) for key in curve.keyframe_points]
             if name not in posed or not np.isin(np.round(frames, 3), np.round(copied, 3)).all():
                 found[name] = frames
     return {name: frames for name, frames in found.items() if len(frames)}
-
-
-def copy_posed_extremities(
-    armature_object: Object, source: Action, posed: Collection[str], channelbag: ActionChannelbag
-) -> None:
-    """Copy the curves of some hands and feet as GENERATED keys; where the animator has a key, that stays."""
-    for (path, index), curve in curves_of(source, armature_object).items():
-        if EXTREMITY_PATHS.get(path) in posed:
-            copy_as_generated(curve, ensure_fcurve(channelbag, path, index, EXTREMITY_PATHS[path]))
 
 
 def straighten_extremities(
@@ -87,7 +65,7 @@ def straighten_extremities(
     Nobody has posed them: Blender leaves a channel without keys as it was, so that they would stay turned
     under the next Action, and would be keyed with the next pose. What is posed in the keyframe Action stays.
     """
-    given = curves_of(action, armature_object)
+    moved = curves_of(action, armature_object)
     posed = posed_extremities(armature_object, keyframe_action)
     for name in set(EXTREMITIES) - posed:
         bone = armature_object.pose.bones.get(name)
@@ -95,7 +73,7 @@ def straighten_extremities(
             continue
         values = np.array(getattr(bone, rotation_path(bone.rotation_mode)))
         path = bone_path(name, rotation_path(bone.rotation_mode))
-        curves = [given.get((path, index)) for index in range(len(values))]
+        curves = [moved.get((path, index)) for index in range(len(values))]
         shown = np.array([np.nan if curve is None else curve.evaluate(frame) for curve in curves])
         if np.abs(shown - values).max() < SAME_VALUE:  # not so where a curve is missing
             bone.rotation_quaternion = (1.0, 0.0, 0.0, 0.0)
@@ -104,7 +82,6 @@ def straighten_extremities(
 
 
 def _shown_curves(armature_object: Object, action: Action) -> dict[str, list[FCurve]]:
-    """The curves that move each of them: those of its rotation mode, and of its location."""
     curves = curves_of(action, armature_object)
     found = {}
     for name in EXTREMITIES:
@@ -187,6 +164,8 @@ def write_motion(
         add_fingers(armature_object, shown.body)
         turns |= finger_turns(shown.hands)
     if shown.hands is not None and keyframe_action is not None:
+        from .posed_hands import put_right
+
         models = {model.name: model for model in read_bones(armature_object).models}
         curves = _shown_curves(armature_object, keyframe_action)
         for name in [name for name in posed if name not in FEET]:
@@ -197,9 +176,11 @@ def write_motion(
     columns = posture_columns(read_bones(armature_object), shown.posture, extremities)
     action = action or bpy.data.actions.new(f"{armature_object.name} Motion")
     channelbag = channelbag_for(action, armature_object)
-    remove_generated_keys(channelbag, [*moved_paths(armature_object), *EXTREMITY_PATHS])
-    write_keys(channelbag, columns, frames, MOTION)
-    if keyframe_action is not None:
-        copy_posed_extremities(armature_object, keyframe_action, posed, channelbag)
+    keys.remove_generated_keys(channelbag, [*moved_paths(armature_object), *EXTREMITY_PATHS])
+    write_keys(channelbag, columns, frames, keys.MOTION)
+    source = {} if keyframe_action is None else curves_of(keyframe_action, armature_object)
+    for (path, index), curve in source.items():
+        if EXTREMITY_PATHS.get(path) in posed:  # where the animator has a key, that stays
+            keys.copy_as_generated(curve, ensure_fcurve(channelbag, path, index, EXTREMITY_PATHS[path]))
     assign_action(armature_object, action)
     return action

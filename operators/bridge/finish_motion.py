@@ -18,23 +18,16 @@ from ...core.feet.planted_feet import PlantedFeet, plant_feet
 from ...core.feet.soles import ground_of
 from ...core.keys.hermite import Spline, values_of
 from ...core.keys.key_reduction import reduce_keys
-from ...core.keys.rig import Rig, RigPose
+from ...core.keys.rig import Rig
 from ...core.keys.tolerances import NEAR_FLOOR_M, foot_rows, point_tolerances
 from ...core.progress import Job, Progress, within
+from . import rig as rigs
 from .actions import channelbag_for, curves_of
 from .armature import read_body, read_bones
 from .fcurves import moved_paths, posture_columns, turned_extremities
 from .keyframes import keyed_frames, unchanged_keyframes
 from .keys import FOUND, copy_keys, ensure_fcurve, write_column
-from .rig import (
-    absence_note,
-    motion_frames,
-    read_rig,
-    read_values,
-    rig_channels,
-    shown_postures,
-    unit_quaternions,
-)
+from .rig import read_rig, read_values, rig_channels, shown_postures
 from .rotation_modes import ALL_PATHS, bone_path
 
 PLANTING = "Planting the feet"
@@ -104,23 +97,23 @@ def finish_motion(
     options: FinishOptions,
     frame_s: float,
 ) -> Job[Finished]:
-    """Finish the motion that an Action holds, with the animator's changes; nothing in Blender is changed.
-
-    Frames of the animator's keyframes stay keys; `frame_s` is the time from one scene frame to the next [s].
-    Raises InputError where the Action has no motion of the actor, or the armature is not an actor's.
-    """
+    """Finish the motion in an Action; keyframes stay keys. `frame_s` is the time of a scene frame [s]."""
     body = read_body(armature_object)
     turned = turned_extremities(armature_object, action, keyframe_action)
     rig = read_rig(armature_object, body, turned)
-    frames = motion_frames(armature_object, action)
-    exact = _posed_indices(armature_object, keyframe_action, frames)
+    frames = rigs.motion_frames(armature_object, action)
+    exact = np.zeros(0, dtype=np.intp)  # indices of the frames that the animator posed
+    if keyframe_action is not None:
+        found = unchanged_keyframes(armature_object, keyframe_action, FOUND)
+        posed = np.setdiff1d(keyed_frames(armature_object, keyframe_action), found)
+        exact = np.flatnonzero(np.isin(frames, np.round(posed)))
     reading = read_values(armature_object, action, rig, frames)
     values = yield from within("Reading the motion", reading, 0.0, READ)
     yield Progress(PLANTING, READ)
     time_s = (frames - frames[0]) * frame_s
     shown = rig.pose(values)
     planted = PlantedFeet(shown_postures(rig, shown, body), ())
-    away = absence_note(armature_object, action, 1.0 / frame_s)
+    away = rigs.absence_note(armature_object, action, 1.0 / frame_s)
     notes: tuple[str, ...] = (away,) if away else ()
     yield Progress(PLANTING, SEEN)
     if options.stray_m is not None:
@@ -129,7 +122,15 @@ def finish_motion(
         planted = yield from within(PLANTING, planting, SEEN, PLANTED)
         moved = [row for row, bone in enumerate(rig.bones) if bone.name.partition(".")[0] in MOVED_BY_FEET]
         if planted.contacts:
-            notes += _reach_notes(rig, shown, moved, body, before)
+            pose, slices = body.pose(before), rig.point_slices
+            ends = [shown.points[:, slices[row].start + 1] for row in moved]
+            off_m = max(
+                np.linalg.norm(end - body.segment_ends(pose, rig.bones[row].name)[1], axis=-1).max()
+                for row, end in zip(moved, ends, strict=True)
+            )
+            if off_m > NOTICEABLE_M:
+                far = f"The motion goes up to {1000.0 * off_m:.0f} mm beyond what the skeleton's legs can do"
+                notes += (f"{far}; planting the feet uses the nearest posture",)
             every = {rig.bones[row].name: np.ones(len(frames), dtype=bool) for row in moved}
             values = _replaced(armature_object, rig, values, planted.posture, every)
         else:
@@ -144,7 +145,7 @@ def finish_motion(
         values = _replaced(armature_object, rig, values, planted.posture, where, natural)
         for held, bone in zip(values, rig.bones, strict=True):
             if bone.name in where and bone.mode == "QUATERNION":
-                held[:, :4] = unit_quaternions(held[:, :4])
+                held[:, :4] = rigs.unit_quaternions(held[:, :4])
     floor_m = None
     if planted.contacts:
         floor_m = ground_of(body, body.pose(planted.posture), time_s, planted.contacts).height_m
@@ -181,33 +182,11 @@ def _few_keys(
     return reduced.splines + bent.splines, reduced.furthest_m
 
 
-def _posed_indices(armature_object: Object, keyframe_action: Action | None, frames: Array) -> IndexArray:
-    """Indices of the frames that the animator posed."""
-    if keyframe_action is None:
-        return np.zeros(0, dtype=np.intp)
-    found = unchanged_keyframes(armature_object, keyframe_action, FOUND)
-    posed = np.setdiff1d(keyed_frames(armature_object, keyframe_action), found)
-    return np.flatnonzero(np.isin(frames, np.round(posed)))
-
-
 def _soles_m(rig: Rig, values: list[Array]) -> Array:
     """(F, 2) height of the lower of heel and tip of each foot [m]; infinite without bones of their own."""
     shown = rig.pose(values)
     heights = [shown.points[:, foot_rows(rig, side)[1:], 2] for side in SIDES]
     return np.stack([own.min(axis=1, initial=np.inf) for own in heights], axis=1)
-
-
-def _reach_notes(
-    rig: Rig, shown: RigPose, moved: Sequence[int], body: Body, before: Posture
-) -> tuple[str, ...]:
-    """A note on legs of the rig that no posture reaches."""
-    pose, slices = body.pose(before), rig.point_slices
-    ends = {row: body.segment_ends(pose, rig.bones[row].name)[1] for row in moved}
-    off = [np.linalg.norm(shown.points[:, slices[row].start + 1] - end, axis=-1) for row, end in ends.items()]
-    if np.max(off) <= NOTICEABLE_M:
-        return ()
-    note = f"The motion goes up to {1000.0 * np.max(off):.0f} mm beyond what the skeleton's legs can do; "
-    return (note + "planting the feet uses the nearest posture",)
 
 
 def _replaced(

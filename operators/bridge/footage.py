@@ -92,16 +92,11 @@ def clip_path(clip: MovieClip) -> Path:
 
 
 def clip_rate(clip: MovieClip, fps: float) -> float:
-    """Frames per second of a clip on a scene's time line; `fps` for images, which have no rate.
-
-    With Blender's own mean of a variable rate, keys belong at `frame_start + time * clip.fps`.
-    """
+    """Frames per second of a clip on a scene's time line, a mean if it varies; `fps` for images."""
     return float(clip.fps) if clip.source == "MOVIE" and clip.fps > 0.0 else fps
 
 
-def set_scene_range(
-    scene: Scene, size: tuple[int, int], fps: float, frame_start: int, frame_count: int
-) -> None:
+def set_scene_range(scene: Scene, size: tuple[int, int], fps: float, frame_start: int, frames: int) -> None:
     """Set a scene's size [px], frames per second and frame range to those of a clip."""
     render = scene.render
     render.resolution_x, render.resolution_y = size
@@ -110,7 +105,7 @@ def set_scene_range(
     render.fps = max(1, round(fps))
     render.fps_base = render.fps / fps
     scene.frame_start = frame_start
-    scene.frame_end = frame_start + frame_count - 1
+    scene.frame_end = frame_start + frames - 1
 
 
 def footage_color(footage: Footage, pixel: ArrayLike, scene_frame: int | None = None) -> tuple[int, int, int]:
@@ -189,9 +184,6 @@ def attach_footage(
 def is_guess(data: bpy.types.Camera, guessed_lens_mm: float) -> bool:
     """Whether a camera still has the lens that was guessed for it; 0 stands for no guess."""
     return guessed_lens_mm > 0.0 and abs(data.lens - guessed_lens_mm) < 1e-3
-
-
-# --- The footage's camera in a scene: core's camera from Blender's, and height, tilt and roll of a still one
 
 
 def read_camera(footage: Footage, frames: Array) -> Camera:
@@ -283,14 +275,6 @@ def write_placement(camera_object: Object, placement: CameraPlacement) -> None:
 def still_camera(footage: Footage) -> Camera:
     """Lens and pose of the footage's camera in the scene's current frame."""
     return replace(read_lens(footage), matrix_world=_rigid(_matrix(footage.camera)))
-
-
-def write_found_camera(footage: Footage, camera: Camera) -> None:
-    """Give the footage's camera another height, tilt, roll and focal length; nothing else of it changes."""
-    data = footage.camera.data
-    # Where Blender measures the sensor along the other side, the same factor applies.
-    data.lens *= camera.lens_mm / read_lens(footage).lens_mm
-    write_placement(footage.camera, CameraPlacement.of(camera.matrix_world))
 
 
 def _matrix(camera_object: Object) -> Matrix:

@@ -26,9 +26,6 @@ def candidate_posture(candidate: PropertyGroup) -> Posture:
     return Posture.from_vector(HUMAN, np.array([*candidate.place, *candidate.turns]))
 
 
-# --- Found keyframes, on the keyframe Action beside the animator's own
-
-
 DIGITS = 3  # decimals to which frames are told apart, as in `keyed_frames`
 
 
@@ -44,16 +41,10 @@ def unchanged_keyframes(armature_object: Object, action: Action, kind: keys.KeyK
     return tuple(sorted(found or ()))
 
 
-def write_matched(
-    armature_object: Object, action: Action, frames: Array, postures: Sequence[Posture]
-) -> None:
-    """Key K postures at scene frames (K,) as found keyframes; other keys there are replaced.
-
-    A quaternion and its negative are the same posture, but Blender interpolates number by number: keyed is
-    the one by which bones do not turn the long way round.
-    """
+def write_matched(armature_object: Object, action: Action, frames: Array, posed: Sequence[Posture]) -> None:
+    """Key K postures at scene frames (K,) as found, instead of others, by quaternions of the nearest sign."""
     channelbag, curves = channelbag_for(action, armature_object), curves_of(action, armature_object)
-    columns = posture_columns(read_bones(armature_object), Posture.stack(list(postures)))
+    columns = posture_columns(read_bones(armature_object), Posture.stack(list(posed)))
     signs: dict[str, Array] = {}  # (K,) by data path
     for path in {path for path, *_ in columns if path.endswith("rotation_quaternion")}:
         values = np.stack([column for other, _, _, column in columns if other == path])  # (4, K)
@@ -87,9 +78,6 @@ def _channels(armature_object: Object) -> Iterator[tuple[BoneModel, str, int, fl
                 yield model, bone_path(model.name, channel), index, value
 
 
-# --- Keyframes of the animator
-
-
 Matches = Mapping[float, Matched]  # what found keyframes resemble, by frame of `unchanged_keyframes`
 NOT_MATCHED: Matches = MappingProxyType({})
 NEAREST = 0.5  # a key farther than this [frames] from every frame of the clip belongs to none
@@ -119,11 +107,7 @@ def read_keyframes(
     clip_frames: Array,
     matches: Matches = NOT_MATCHED,
 ) -> PosedKeyframes:
-    """The postures that the armature shows at the frames keyed in `action`; nothing in the scene changes.
-
-    Each is the whole pose as Blender evaluates it there, also of bones without a key on that frame. Keys
-    beside `clip_frames` (F,), the scene frames of the clip's, are left out with a note.
-    """
+    """Whole poses, as Blender shows them at frames keyed in `action` near the clip's (F,)."""
     keyed = np.array(keyed_frames(armature_object, action))
     index = np.abs(clip_frames - keyed[:, None]).argmin(axis=1)
     apart = np.abs(clip_frames[index] - keyed)

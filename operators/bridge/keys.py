@@ -76,14 +76,12 @@ def _value_mark(keys: Keys) -> SingleArray:
 
 
 def _as_generated(keys: Keys) -> Keys:
-    """The keys as Keymark's own."""
     used = keys["interpolation"] == _enum_value("interpolation", "BACK")
     types = np.full(len(used), _enum_value("type", "GENERATED"), np.int32)
     return {**keys, "type": types, "back": np.where(used, keys["back"], _value_mark(keys))}
 
 
 def _as_animators(keys: Keys) -> Keys:
-    """The keys as the animator's: none is of the type GENERATED."""
     types, generated = keys["type"], _enum_value("type", "GENERATED")
     plain = np.where(types == generated, _enum_value("type", "KEYFRAME"), types).astype(np.int32)
     return {**keys, "type": plain}
@@ -132,9 +130,6 @@ def _new_keys(frames: Array, values: Array, kind: KeyKind) -> Keys:
     return keys
 
 
-# --- Frames with keys
-
-
 def animator_frames(fcurve: FCurve) -> Array:
     """Frames (N,) of the keys that are not GENERATED, and of those of found keyframes."""
     # Read as little as possible: the timeline's draw function asks for all of an armature's curves.
@@ -160,9 +155,6 @@ def unchanged_frames(fcurve: FCurve, kind: KeyKind) -> Array:
     if kind.amplitude is not None:
         unchanged &= keys["amplitude"] == kind.amplitude
     return np.asarray(keys["co"][unchanged, 0], dtype=np.float64)
-
-
-# --- Keys written, handed over and removed
 
 
 def write_keys(channelbag: ActionChannelbag, columns: Iterable[Column], frames: Array, kind: KeyKind) -> None:
@@ -218,14 +210,12 @@ def give_to_animator(channelbag: ActionChannelbag, paths: Iterable[str], frames:
 
 
 def _curves(channelbag: ActionChannelbag, paths: Iterable[str]) -> Iterator[tuple[FCurve, Keys]]:
-    """The curves of some data paths, with their keys."""
     wanted = set(paths)
     for fcurve in [curve for curve in channelbag.fcurves if curve.data_path in wanted]:
         yield fcurve, _read_keys(fcurve)
 
 
 def _keep(channelbag: ActionChannelbag, fcurve: FCurve, keys: Keys, kept: BoolArray) -> None:
-    """Leave a curve some of its keys only; without any it is removed."""
     if kept.any():
         _write_keys(fcurve, _chosen(keys, kept))
     else:
@@ -240,10 +230,7 @@ def mark_generated(channelbag: ActionChannelbag) -> None:
 
 
 def write_column(fcurve: FCurve, frames: Array, held: "Array | Spline", column: int) -> None:
-    """Replace a curve's keys by the animator's own: few of them, or values on each of the frames (F,).
-
-    Handles of few keys lie at a third of the way to the next: the curve is the cubic of values and slopes.
-    """
+    """Replace a curve's keys by the animator's own: few of them, or values on each of the frames (F,)."""
     if isinstance(held, np.ndarray):
         write_linear_keys(fcurve, frames, held[:, column])
         return

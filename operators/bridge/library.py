@@ -19,16 +19,9 @@ from ...core.body.kinematics import Body
 from ...core.body.posture import Posture, headings_rad, turned_and_shifted
 from ...core.errors import InputError
 from ...core.files.json_file import parse_json
-from ...core.prior.learning import LibraryMetadata, learn_library, numbered_names
-from ...core.prior.library import (
-    MOST_POSTURES,
-    Library,
-    LibraryMotion,
-    LibraryPosture,
-    MotionStep,
-    read_library,
-    transferred,
-)
+from ...core.prior import library as prior_library
+from ...core.prior.learning import LibraryMetadata, numbered_names
+from ...core.prior.library import Library, LibraryMotion, LibraryPosture, MotionStep
 from ...core.prior.texts import LONGEST_NAME, LONGEST_TAG, identifier_from, text_fault, unique_name
 from ...core.report.mannequin import posture_picture
 from .armature import read_body
@@ -37,7 +30,6 @@ from .assets import AssetDetails, mark_asset
 from .blend_files import check_blend, load_blocks
 from .keyframes import keyed_frames, read_keyframes
 from .pose import read_posture_curves, write_posture_curves
-from .rig import shown_motion
 
 LARGEST_BYTES = 256 * 2**20  # enough for a thousand postures with pictures; a film's scene is refused
 
@@ -61,13 +53,14 @@ def read_library_blend(path: Path) -> tuple[Library, ...]:
 
     def few(there: list[str]) -> list[str]:
         names.extend(there)
-        return there if len(there) <= MOST_POSTURES else []
+        return there if len(there) <= prior_library.MOST_POSTURES else []
 
     try:
         actions = load_blocks(path, "actions", "it may be damaged or cut off", few, assets_only=True)
-        if len(names) > MOST_POSTURES:
+        if len(names) > prior_library.MOST_POSTURES:
             raise InputError(
-                f"{path}: holds {len(names)} Actions marked as assets; at most {MOST_POSTURES} are read"
+                f"{path}: holds {len(names)} Actions marked as assets; at most "
+                f"{prior_library.MOST_POSTURES} are read"
             )
         libraries = library_from_assets(actions)
     finally:
@@ -85,11 +78,8 @@ def read_libraries(path: Path) -> tuple[Library, ...]:
     if suffix == ".blend":
         return read_library_blend(path)
     if suffix == ".json":
-        return (read_library(path),)
+        return (prior_library.read_library(path),)
     raise InputError(f"{path}: is neither a .json nor a .blend; libraries are kept in these")
-
-
-# --- Keyframe libraries of keyframes, of pose assets, and learned from a motion
 
 
 def library_of_keyframes(
@@ -107,17 +97,13 @@ def library_of_keyframes(
     steps = tuple(MotionStep(name, round(float(at), 4)) for name, at in zip(names, time_s, strict=True))
     entries = tuple(LibraryPosture(name, postures[row]) for row, name in enumerate(names))
     motion = LibraryMotion(about.title, steps, steps[-1].time_s)
-    return _checked(replace(_empty(body, about), postures=entries, motions=(motion,)))
+    return checked(replace(_empty(body, about), postures=entries, motions=(motion,)))
 
 
 def library_of_assets(
     actions: Iterable[Action], armature_object: Object | None, about: LibraryMetadata, identifier: str
 ) -> Library:
-    """The library that pose assets belong to, with an actor's pose assets of one frame that belong to none.
-
-    Linked Actions are ignored. Of several libraries that with the identifier is taken; a new one has the
-    details `about`. InputError where there are no pose assets, or of several other libraries.
-    """
+    """The library of pose assets, with an actor's own of one frame; a new one is `about`, or InputError."""
     local = [action for action in actions if action.library is None]
     found = {library.identifier: library for library in library_from_assets(local)}
     if len(found) > 1 and identifier not in found:
@@ -139,9 +125,9 @@ def library_of_assets(
         library = _empty(loose[0][1], about)
     entries = list(library.postures)
     for name, body, posture in loose:
-        fitted = transferred(posture, body.actor, Body(library.actor))
+        fitted = prior_library.transferred(posture, body.actor, Body(library.actor))
         entries.append(LibraryPosture(unique_name(name, [entry.name for entry in entries]), fitted))
-    return _checked(replace(library, postures=tuple(entries)))
+    return checked(replace(library, postures=tuple(entries)))
 
 
 def _leveled(body: Body, postures: Posture) -> Posture:
@@ -157,18 +143,10 @@ def _empty(body: Body, about: LibraryMetadata) -> Library:
     return Library(identifier, about.title, 1, about.author, about.license, body.actor, ())
 
 
-def _checked(library: Library) -> Library:
+def checked(library: Library) -> Library:
     """The library, which is what a file may hold: names are typed by people."""
     Library.from_json(library.to_json(), f"library '{library.title}'")
     return library
-
-
-def library_from_action(
-    scene: Scene, armature_object: Object, action: Action, about: LibraryMetadata, count: int | None
-) -> Library:
-    """Learn a library of `count` postures, or as many as differ, from the motion that an Action holds."""
-    motion = shown_motion(scene, armature_object, action)
-    return _checked(learn_library(motion.body, motion.posture, motion.time_s, about, count))
 
 
 # --- Keyframe libraries as pose assets: an Action of one frame for each posture, and back without loss
@@ -298,7 +276,6 @@ def _merged(assets: Sequence[PoseAsset]) -> Library:
 
 
 def _fields(action: Action, name: str) -> dict[str, Any]:
-    """The parsed JSON of one of an Action's two properties."""
     text, where = action.get(name), f"{_where(action)}: its property {name}"
     if not isinstance(text, str) or len(text) > LONGEST_TEXT:
         raise InputError(f"{where} is not what Keymark writes")

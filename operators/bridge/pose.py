@@ -74,9 +74,6 @@ def write_posture(armature_object: Object, posture: Posture) -> None:
     evaluated(armature_object)
 
 
-# --- F-curves of a single posture, written and read without any armature
-
-
 SAME = 2e-6  # largest relative error of channels by single precision
 
 
@@ -87,11 +84,7 @@ def write_posture_curves(action: Action, body: Body, posture: Posture) -> None:
 
 
 def read_posture_curves(action: Action, body: Body, stored: Posture | None = None) -> Posture | None:
-    """The posture that a pose asset's curves show; None where it has no curve of a bone of the skeleton.
-
-    `stored` is the posture that the curves were once written from: joints whose curves are unchanged are
-    taken from it, to the last digit. Bones without curves are as there, or at rest.
-    """
+    """The posture of a pose asset's curves, to the last digit as `stored` where unchanged; None if none."""
     curves = {channel: curve for channel, curve in curves_of(action).items() if not curve.is_empty}
     bones = bones_at_rest(body)
     before: dict[str, list[float]] = {}  # a rotation's values, for the root then the location's
@@ -129,7 +122,6 @@ def read_posture_curves(action: Action, body: Body, stored: Posture | None = Non
 def _read_bone(
     curves: Mapping[tuple[str, int], FCurve], model: BoneModel, mode: str, known: Array
 ) -> tuple[str, bool, Array]:
-    """A bone's rotation mode, whether it has any curves, and its values."""
     euler = mode if len(mode) == 3 else "XYZ"
     modes = [mode, *(other for other in ("QUATERNION", "AXIS_ANGLE", euler) if other != mode)]
     paths = {each: bone_path(model.name, rotation_path(each)) for each in modes}

@@ -62,11 +62,7 @@ def stored_path(file: Path) -> str:
 def show_footage(
     scene: Scene, camera: Camera, clip_path: Path, fps: float, frame_start: int, time_s: Array
 ) -> tuple[Object, Array]:
-    """Show a clip behind a new camera, which is returned, with the scene frames (F,) of the clip's.
-
-    The scene takes the clip's size, rate (see `clip_rate`) and range, so that scene frame `frame_start` shows
-    its first frame. A moving camera has its poses at the frames, whose times are (F,) [s].
-    """
+    """Show a clip behind a new camera from `frame_start` on; both the camera and its scene frames (F,)."""
     clip = load_footage(clip_path)
     rate = clip_rate(clip, fps)
     frames = scene_frames(time_s, frame_start, rate)
@@ -94,9 +90,6 @@ def set_pose(camera_object: Object, camera: Camera, frames: Array) -> None:
     columns = [(path, i, "Camera", column) for path, rows in channels for i, column in enumerate(rows.T)]
     write_keys(channelbag_for(action, camera_object), columns, frames[: len(poses)], MOTION)
     assign_action(camera_object, action)
-
-
-# --- A result as files for other programs, a .blend with everything in it and a BVH, of a scene of its own
 
 
 def write_scene(take: Take, motion: Motion, blend_path: Path, bvh_path: Path | None = None) -> str:

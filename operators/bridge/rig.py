@@ -30,11 +30,7 @@ def read_rig(armature_object: Object, body: Body, extremities: Collection[str] =
 
 
 def rig_of(resting: ActorBones, body: Body, extremities: Collection[str] = ()) -> Rig:
-    """A rig of bones with degrees of freedom, in their rotation modes, with the ends of hands and feet.
-
-    `posture_columns` run backwards: a bone's posed axes are its rest axes turned by its channels. Hands and
-    feet that are not named are rigid with their limbs.
-    """
+    """A rig of bones in their modes: `posture_columns` backwards; hands and feet not named are rigid."""
     axes, rest, space = {model.name: model.axes for model in resting.models}, resting.rest, resting.space
     models = tuple(model for model in (*bone_models(body), *finger_models(body)) if model.name in axes)
     turning = [model for model in models if model.chain or model.name in extremities]
@@ -109,11 +105,7 @@ def _keyed(armature_object: Object, action: Action) -> list[FCurve]:
 
 
 def present_frames(armature_object: Object, action: Action, rate: float) -> Array:
-    """(F,) the frames of `motion_frames` in which the performer is there, at the scene's rate [1/s].
-
-    Stretches of a motion have keys on every frame, and a longer gap than is bridged between them; an Action
-    of few keys has no stretches.
-    """
+    """(F,) the frames of `motion_frames` in which the performer is there: all but long gaps in dense keys."""
     from ...core.take.presence import BRIDGED_S  # OpenCV, which Blender starts without
 
     frames = motion_frames(armature_object, action)

@@ -4,7 +4,6 @@ from collections.abc import Mapping
 
 import bpy
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from ...core.arrays import Array
 from ...core.body import rotations
@@ -29,14 +28,13 @@ def bone_path(bone: str, channel: str) -> str:
 
 
 def rotation_values(rotation: Array, mode: str) -> Array:
-    """Values of the property `rotation_path(mode)` that show rotations (F, 3, 3) from rest, without jumps.
-
-    (F, 4) quaternion w, x, y, z or angle [rad] and axis x, y, z; or (F, 3) Euler angles x, y, z [rad].
-    """
+    """(F, 4) or (F, 3) values of the property `rotation_path(mode)` of rotations (F, 3, 3), without jumps."""
     if mode == "QUATERNION":
         return continuous_quaternions(to_quaternions(rotation))
+    from scipy.spatial.transform import Rotation
+
     if mode != "AXIS_ANGLE":
-        return _continuous_eulers(rotation, mode)
+        return _continuous_eulers(Rotation.from_matrix(rotation).as_euler(mode.lower()), mode)
     vectors = Rotation.from_matrix(rotation).as_rotvec()
     angles = np.linalg.norm(vectors, axis=-1)
     turned = angles >= 1e-7
@@ -50,9 +48,8 @@ def rotation_values(rotation: Array, mode: str) -> Array:
     return np.concatenate([unwrapped[:, None], signs[:, None] * axes[1:]], axis=-1)
 
 
-def _continuous_eulers(rotation: Array, order: str) -> Array:
+def _continuous_eulers(angles: Array, order: str) -> Array:
     # Blender's XYZ turns about the fixed x first, then y, then z: scipy's lower case.
-    angles = Rotation.from_matrix(rotation).as_euler(order.lower())
     # The second triple is the same rotation; it is the nearer one after passing the pole.
     triples = np.stack([angles, angles * [1.0, -1.0, 1.0] + np.pi])
     steps = triples[None, :, 1:] - triples[:, None, :-1]

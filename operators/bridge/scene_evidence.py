@@ -7,7 +7,6 @@ from functools import lru_cache
 from operator import itemgetter
 from pathlib import Path
 from stat import S_ISDIR
-from typing import TYPE_CHECKING
 
 import numpy as np
 from bpy.types import MovieClip, MovieTrackingMarker, MovieTrackingTrack
@@ -16,23 +15,16 @@ from ...core.arrays import Array
 from ...core.detect.keypoints import People, SeenPeople
 from ...core.errors import InputError
 from ...core.files.digest import digest
+from ...core.markers.ignored_regions import IgnoredRegion
+from ...core.markers.region_tracks import MarkerStyle
 from .footage import Footage
 from .scene_frames import shown_index
-
-if TYPE_CHECKING:
-    from ...core.markers.ignored_regions import IgnoredRegion
-    from ...core.markers.region_tracks import MarkerStyle
-    from ...core.take.reference import ReferenceMotion
 
 
 def read_keypoint_file(
     path: Path, frame_count: int | None, size: tuple[int, int], fps: float, frame_start: int
 ) -> People:
-    """Everyone whom a file of keypoints, or a folder with a file a frame, says was seen.
-
-    `frame_count` is None where it is not known; `size` is width and height of the clip [px]. InputError where
-    the file is missing or unusable, or cannot be one of this clip.
-    """
+    """Everyone seen, by keypoints of a clip of this size [px], of as many frames if known; or InputError."""
     if (state := file_state(path)) is not None:
         return _read(path, state, frame_count, size, fps, frame_start)
     raise InputError(f"{path}: the keypoints are not there; load them from where they are now")
@@ -74,9 +66,6 @@ def one_person(
     return People(tuple(names), source, size, frames, by_hand=True)
 
 
-# --- Points that a person clicked on in single frames
-
-
 CLICKS = "clicks"
 
 
@@ -103,9 +92,6 @@ def people_of_clicks(footage: Footage, frames: Array, clicks: Sequence[ClickedPo
     return (one_person(names, CLICKS, tuple(footage.clip.size), pixel, score),)
 
 
-# --- Blender's own motion tracks of a clip as keypoints
-
-
 TRACKS = "tracks"
 
 
@@ -123,16 +109,10 @@ def clip_tracks(clip: MovieClip) -> Iterator[tuple[str, MovieTrackingTrack]]:
     return ((each.name, track) for each in clip.tracking.objects for track in each.tracks)
 
 
-def people_of_tracks(
-    footage: Footage, frames: Array, assigned: Sequence[AssignedTrack]
-) -> tuple[People, ...]:
-    """The performer as tracks of a clip show them; further tracks of the same point are further sources.
-
-    A track is seen where it has a marker of its own that is not disabled; what Blender shows before, between
-    and after is no observation. `frames` (F,) are the scene's; tracks that the clip lacks are left out.
-    """
+def people_of_tracks(footage: Footage, frames: Array, tracks: Sequence[AssignedTrack]) -> tuple[People, ...]:
+    """The performer as tracks of a clip show them at markers of their own; more of a point, more sources."""
     sources: list[dict[str, MovieTrackingTrack]] = []
-    for point, track in _assigned(footage, assigned):
+    for point, track in _assigned(footage, tracks):
         source = next((points for points in sources if point not in points), None)
         if source is None:
             sources.append(source := {})
@@ -167,7 +147,6 @@ def tracks_at(
 def _assigned(
     footage: Footage, assigned: Sequence[AssignedTrack]
 ) -> Iterator[tuple[str, MovieTrackingTrack]]:
-    """The assigned tracks that the clip has, with their points."""
     tracks = {(owner, track.name): track for owner, track in clip_tracks(footage.clip)}
     keys = [(each.point, (each.owner, each.track)) for each in assigned]
     return ((point, tracks[key]) for point, key in keys if key in tracks)
@@ -184,25 +163,18 @@ def _places(footage: Footage, track: MovieTrackingTrack, markers: Sequence[Movie
 class SceneEvidence:
     """Evidence beside the keyframes, as far as it is switched on."""
 
-    markers: "tuple[MarkerStyle, ...]" = ()
+    markers: tuple[MarkerStyle, ...] = ()
     files: tuple[Path, ...] = ()  # files of keypoints, or folders of them
     tracks: tuple[AssignedTrack, ...] = ()
     clicks: tuple[ClickedPoint, ...] = ()
     depth_hints: bool = True  # whether a detector's guess of depths is used
     contours: bool = True
-    ignored_regions: "tuple[IgnoredRegion, ...]" = ()  # regions of the picture that are never a marker
+    ignored_regions: tuple[IgnoredRegion, ...] = ()  # regions of the picture that are never a marker
     reference: Path | None = None  # file of a motion from elsewhere
 
     @property
     def has_keypoints(self) -> bool:
         return bool(self.files or self.tracks or self.clicks)
-
-    def reference_motion(self) -> "ReferenceMotion | None":
-        """The motion from elsewhere; None without one."""
-        from ...core.take.reference import reference_of_take
-        from .motions.import_motion import armature_reference
-
-        return reference_of_take(self.reference, None, armature_reference)
 
     def people(self, footage: Footage, frames: Array) -> tuple[People, ...]:
         """Everyone whom each source of keypoints saw, clicked points first; `frames` (F,) are the scene's."""

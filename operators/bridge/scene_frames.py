@@ -23,11 +23,7 @@ LOOKS_AT_ONCE = 40  # frames looked at in a row: putting the scene back takes as
 
 
 def scene_frames(time_s: Array, first: float, rate: float) -> Array:
-    """Scene frames (F,) that show the frames of a clip, whose times are (F,) [s] from the first.
-
-    Whole steps for a constant rate, however the container rounds its times; fractional ones, as Blender shows
-    them, for a variable rate.
-    """
+    """Scene frames (F,) of a clip's, whose times are (F,) [s]: whole steps, others if its rate varies."""
     steps = time_s * rate if is_variable_frame_rate(time_s) else np.arange(len(time_s), dtype=np.float64)
     return np.asarray(first + steps)
 

@@ -7,13 +7,11 @@ import numpy as np
 from bpy.types import Action, Object
 
 from ...core.arrays import Array
-from ...core.body.actor import Actor
 from ...core.body.kinematics import Body
 from ...core.body.posture import Posture
 from ...core.camera.camera import Camera
 from ...core.detect.keypoints import Keypoints
 from ...core.errors import InputError
-from ...core.estimate.actor_measure import MeasuredActor, measure_standing
 from ...core.estimate.clip_problem import uncalibrated
 from ...core.estimate.keypoint_evidence import KeypointEvidence
 from ...core.estimate.performer_placement import place_standing
@@ -30,6 +28,7 @@ from ...core.prior.keyframes import Keyframe
 from ...core.prior.library import Library
 from ...core.progress import Job, within
 from ...core.take.performer_keypoints import performer_keypoints
+from ...core.take.reference import reference_of_take
 from ...core.take.take import Take
 from ...core.terms.keypoints import ObservedKeypoints
 from ...core.terms.region_model import MarkerPlacement, RegionModel
@@ -37,6 +36,7 @@ from ...core.terms.regions import ObservedRegions
 from .armature import read_body
 from .footage import Footage, read_camera, read_lens
 from .keyframes import NEAREST, NOT_MATCHED, Matches, read_keyframes
+from .motions.import_motion import armature_reference
 from .pose import read_posture
 from .scene_evidence import SceneEvidence
 from .scene_frames import scene_frames
@@ -82,7 +82,7 @@ def scene_take(footage: Footage, evidence: SceneEvidence, frames: Array, body: B
         keypoints=evidence.people(footage, frames),
         contours=evidence.contours,
         ignored_regions=evidence.ignored_regions,
-        reference=evidence.reference_motion(),
+        reference=reference_of_take(evidence.reference, None, armature_reference),
     )
 
 
@@ -237,19 +237,3 @@ def fit_to_frame(
     off = frame_residuals(evidence, shown.regions, here, found.candidates[0].posture, len(posed))
     residual_px = np.append(off.marker_px, off.keypoint_px)
     return FrameResult(found.candidates, found.contradictions, residual_px, found.cost)
-
-
-def measured_in_frame(
-    frame: FrameInFootage,
-    stature_m: float,
-    crown_px: tuple[float, ...],
-    ground_px: tuple[float, ...],
-    arms_stretched: bool,
-) -> MeasuredActor:
-    """Measure the performer in a frame in which they stand; see `measure_standing`."""
-    camera = read_camera(frame.footage, frame.clip_frames[[frame.index]])
-    regions = frame.regions() if frame.styles else None
-    keypoints = frame.keypoints(Body(Actor.from_stature(stature_m))).frame(frame.index)
-    return measure_standing(
-        camera, 0, stature_m, crown_px, ground_px, regions, frame.segments, arms_stretched, keypoints
-    )

@@ -1,24 +1,17 @@
 """Add a character that is to perform the take's motion."""
 
 import bpy
-from bpy.types import Context, Event, Menu, PropertyGroup
+from bpy.types import Context, Event, Menu, Operator, PropertyGroup
 
 from ...core.errors import InputError
+from ..actor.take_actor import leave_mode
 from ..bridge.character.read_character import make_override, needs_override
 from ..bridge.character.rigify_human import add_rigify_human, enable_rigify, has_rigify, is_rigify_enabled
-from ..shell.base_operator import BaseOperator, bones_editable, idle, of_take, remove_active
+from ..shell import need
+from ..shell.base_operator import BaseOperator, operator, remove_active
 from ..shell.fields import SKIP_SAVE, Text
 from ..shell.takes import active_take
-from .characters import (
-    active_character,
-    add_character,
-    armature,
-    candidates,
-    character,
-    find_character,
-    require_character_armature,
-    take,
-)
+from . import characters
 from .map_properties import map_of, show_map
 from .recognition import say_recognized
 
@@ -27,7 +20,7 @@ class KEYMARK_OT_add_character(BaseOperator, bpy.types.Operator):
     """Add a character: the selected armature, the only one, or one of several; its bones are recognized"""
 
     bl_label = "Add Character"
-    requirements = (take, idle)
+    requirements = (characters.take, need.idle)
 
     armature: Text(
         "Armature",
@@ -36,7 +29,7 @@ class KEYMARK_OT_add_character(BaseOperator, bpy.types.Operator):
     )
 
     def invoke(self, context: Context, event: Event) -> set[str]:
-        found = candidates(context.scene, context.view_layer)
+        found = characters.candidates(context.scene, context.view_layer)
         if self.armature or len(found) < 2:
             return self.execute(context)
         names, own = [each.name for each in found], "keymark.add_character"
@@ -52,18 +45,18 @@ class KEYMARK_OT_add_character(BaseOperator, bpy.types.Operator):
     def run(self, context: Context) -> None:
         if self.armature:
             chosen = bpy.data.objects.get(self.armature)
-            require_character_armature(chosen, self.armature)
+            characters.require_character_armature(chosen, self.armature)
         else:
-            found = candidates(context.scene, context.view_layer)
+            found = characters.candidates(context.scene, context.view_layer)
             chosen = found[0] if len(found) == 1 else None
-        character = add_character(active_take(context.scene), chosen)
+        character = characters.add_character(active_take(context.scene), chosen)
         if chosen is None:
             self.report({"INFO"}, "Choose the character's armature")
         else:
             say_recognized(self, character)
 
 
-rigify = of_take(
+rigify = need.of_take(
     lambda _state: has_rigify(), "This Blender comes without the add-on Rigify; install Rigify first"
 )
 
@@ -74,8 +67,6 @@ def add_rigify_character(context: Context) -> PropertyGroup:
     Raises:
         InputError: It cannot make one.
     """
-    from ..actor.take_actor import leave_mode
-
     leave_mode(context)
     try:
         if not is_rigify_enabled():
@@ -86,9 +77,9 @@ def add_rigify_character(context: Context) -> PropertyGroup:
         raise InputError(
             f"Rigify could not make the rig ({reason}); add one by Add > Armature, and choose it here"
         ) from error
-    chosen = find_character(context.scene)
+    chosen = characters.find_character(context.scene)
     if chosen is None or chosen.armature is not None:
-        return add_character(active_take(context.scene), rig)
+        return characters.add_character(active_take(context.scene), rig)
     chosen.armature = rig
     return chosen
 
@@ -97,7 +88,7 @@ class KEYMARK_OT_add_rigify_human(BaseOperator, bpy.types.Operator):
     """Add a Rigify rig of the performer's size as the character; asks first where Rigify is not enabled"""
 
     bl_label = "Add Rigify Human"
-    requirements = (take, rigify, bones_editable, idle)
+    requirements = (characters.take, rigify, need.bones_editable, need.idle)
 
     def invoke(self, context: Context, event: Event) -> set[str]:
         if is_rigify_enabled():
@@ -114,18 +105,15 @@ class KEYMARK_OT_add_rigify_human(BaseOperator, bpy.types.Operator):
         say_recognized(self, add_rigify_character(context))
 
 
-class KEYMARK_OT_remove_character(BaseOperator, bpy.types.Operator):
+@operator("Remove Character", characters.character, need.idle)
+def remove_character(operator: Operator, context: Context, take: PropertyGroup) -> None:
     """Remove the chosen character from the list; its armature and Actions stay"""
-
-    bl_label = "Remove Character"
-    requirements = (character, idle)
-
-    def run(self, context: Context) -> None:
-        remove_active(active_take(context.scene), "characters", "active_character")
+    remove_active(active_take(context.scene), "characters", "active_character")
 
 
-linked = of_take(
-    lambda state: needs_override(active_character(state.take.id_data).armature), "The character is not linked"
+linked = need.of_take(
+    lambda state: needs_override(characters.active_character(state.take.id_data).armature),
+    "The character is not linked",
 )
 
 
@@ -133,10 +121,10 @@ class KEYMARK_OT_make_override(BaseOperator, bpy.types.Operator):
     """Make a library override of the linked character, with its meshes, so that it can be animated here"""
 
     bl_label = "Make Override"
-    requirements = (armature, linked, idle)
+    requirements = (characters.armature, linked, need.idle)
 
     def run(self, context: Context) -> None:
-        character = active_character(context.scene)
+        character = characters.active_character(context.scene)
         original, scene = character.armature, context.scene
         # A linked collection often stands in a scene as an empty, in whose place it is overridden.
         empties = [] if original.name in scene.objects else scene.objects

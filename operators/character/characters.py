@@ -12,7 +12,8 @@ from ...core.files.fields import listed
 from ...core.retarget.character import REQUIRED
 from ..bridge.actor_bones import is_actor
 from ..bridge.character.read_character import needs_override
-from ..shell.base_operator import capitalized, of_take
+from ..shell import need
+from ..shell.base_operator import capitalized
 from ..shell.take_state import TakeState
 from ..shell.takes import active_take, find_take
 from .map_properties import map_of, role_title
@@ -147,7 +148,6 @@ def missing_source(take: PropertyGroup, character: PropertyGroup) -> str | None:
 
 
 def _source(take: PropertyGroup, character: PropertyGroup) -> tuple[str, Any, Any]:
-    """The kind of motion that a character is to perform, its Action, and the actor that this moves."""
     kind = str(character.source)
     if kind == "ACTION":
         return kind, character.source_action, character.source_actor or take.armature
@@ -156,30 +156,19 @@ def _source(take: PropertyGroup, character: PropertyGroup) -> tuple[str, Any, An
     return kind, take.finish.action if kind == "FINAL" else take.motion_action, take.armature
 
 
-# --- Results of retargeting, in a character's list
-
-
-def result_to_replace(
-    character: PropertyGroup, kind: str, source_action: Action | None
-) -> PropertyGroup | None:
-    """The result that retargeting again replaces: the chosen one, or else the newest, of the same motion.
-
-    The take's final and its reconstructed motion are one motion; any other Action is one of its own.
-    """
+def result_to_replace(character: PropertyGroup, kind: str, source: Action | None) -> PropertyGroup | None:
+    """The result to replace: the chosen one, or else the newest, of the same motion, be it final or not."""
     made = [result for result in character.results if result.action is not None]
     same = [
         result
         for result in made
-        if "ACTION" not in (kind, result.source)
-        or (result.source, result.source_action) == (kind, source_action)
+        if "ACTION" not in (kind, result.source) or (result.source, result.source_action) == (kind, source)
     ]
     chosen = shown_result(character)
     return chosen if chosen in same else next(reversed(same), None)
 
 
-def add_result(
-    character: PropertyGroup, source: SourceMotion, action: Action, made_from: str
-) -> PropertyGroup:
+def add_result(character: PropertyGroup, source: SourceMotion, action: Action, digest: str) -> PropertyGroup:
     """List and choose an Action, in place of what was of it, with its source's digest; deleted ones go."""
     for index in reversed(range(len(character.results))):
         if character.results[index].action is None:
@@ -187,13 +176,13 @@ def add_result(
     actions = [each.action for each in character.results]
     index = actions.index(action) if action in actions else len(actions)
     result = character.results[index] if index < len(actions) else character.results.add()
-    result.action, result.made_from, result.armature = action, made_from, character.armature
+    result.action, result.made_from, result.armature = action, digest, character.armature
     result.source, result.source_action, result.source_actor = source.kind, source.action, source.actor
     character.active_result = index
     return result
 
 
-def add_lines(lines: "bpy.types.bpy_prop_collection_idprop", sentences: Iterable[str], level: str) -> None:
+def add_lines(lines: bpy.types.bpy_prop_collection_idprop, sentences: Iterable[str], level: str) -> None:
     """Add sentences to a list that the panel shows."""
     for sentence in sentences:
         line = lines.add()
@@ -203,10 +192,10 @@ def add_lines(lines: "bpy.types.bpy_prop_collection_idprop", sentences: Iterable
 # --- Requirements of the step's operators: what the chosen character lacks, as a tooltip
 
 
-take = of_take(lambda state: True, "Load the footage or open a take first")
+take = need.of_take(lambda state: True, "Load the footage or open a take first")
 
 
-character = of_take(lambda state: len(state.take.characters), "Add a character first")
+character = need.of_take(lambda state: len(state.take.characters), "Add a character first")
 
 
 def armature(context: Context, _state: TakeState | None) -> str | None:

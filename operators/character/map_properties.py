@@ -36,10 +36,7 @@ def role_title(role: str) -> str:
 
 
 def _bone_chosen(entry: PropertyGroup, context: Context) -> None:
-    """Make the role the person's, and drop what belonged to the bone before.
-
-    A control that was found for another bone would move the wrong part of the rig without a word.
-    """
+    """Make the role the person's, without what was found for the bone before: it would move others."""
     entry.control, entry.keyed = "", True
     path = entry.path_from_id().rpartition(".bones[")[0]
     role = entry.id_data.path_resolve(path) if path else None
@@ -55,12 +52,7 @@ class KEYMARK_PG_role_bone(bpy.types.PropertyGroup):
     bone: Text("Bone", "The bone that plays this role; its head is the joint", update=_bone_chosen)
     control: Text("FK Control", "The bone that is keyed to turn this one; empty for the bone itself")
     keyed: Switch("Keyed", "Whether a control is keyed for this bone at all", default=True)
-    share: Number(
-        "Share",
-        "Share of the whole chain's turn that has been made up to and with this bone",
-        min=0.0,
-        max=1.0,
-    )
+    share: Number("Share", "Share of the chain's turn made up to and with this bone", min=0.0, max=1.0)
 
 
 class KEYMARK_PG_sole_point(bpy.types.PropertyGroup):

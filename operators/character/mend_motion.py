@@ -7,16 +7,21 @@ import bpy
 from bpy.types import Context, Event, Operator, Scene
 
 from ...core.errors import InputError
+from ...core.progress import Job
 from ...core.progress import run as run_job
-from ..shell.base_operator import BaseOperator, bones_editable, browse, chosen_file, idle, warn
-from ..shell.fields import HIDDEN, SKIP_SAVE, Choice, Switch, Text
+from ...core.take.conversion_settings import CharacterFile
+from ...core.take.reference import REFERENCE_ENDINGS, read_reference
+from ..actor.take_actor import leave_mode, select_alone
+from ..bridge.motions.action_names import action_names
+from ..shell import need
+from ..shell.base_operator import BaseOperator, browse, chosen_file, warn
+from ..shell.fields import HIDDEN, SKIP_SAVE, Choice, File, Switch, Text
 from ..shell.job_operator import JobOperator
 from .characters import with_map
 from .map_properties import map_of
 from .recognition import map_folders
 
 if TYPE_CHECKING:
-    from ...core.progress import Job
     from ..bridge.motions.mend_action import MendedAction
 
 SAME = "A new Action on the armature itself; fingers, face and toes move as before"
@@ -38,9 +43,6 @@ def animated(context: Context, _state: object) -> str | None:
 
 
 def _actions(operator: Operator, context: Context, _typed: str) -> list[str]:
-    """The names of the Actions in the file that is chosen, in the file browser too."""
-    from ..bridge.motions.action_names import action_names
-
     chosen, space = Path(operator.filepath), context.space_data
     if isinstance(space, bpy.types.SpaceFileBrowser) and space.params is not None:
         chosen = Path(space.params.directory.decode()) / space.params.filename
@@ -51,12 +53,10 @@ class KEYMARK_OT_load_motion(BaseOperator, bpy.types.Operator):
     """Load a motion that another program made: an animated armature, or points by name"""
 
     bl_label = "Load Motion"
-    requirements = (bones_editable, idle)
+    requirements = (need.bones_editable, need.idle)
 
-    filepath: Text("File", "The motion's file", subtype="FILE_PATH", options=SKIP_SAVE)
-    object: Text(
-        "Armature", "Name of its armature, ROOT or subject, where the file has several", options=SKIP_SAVE
-    )
+    filepath: File("The motion's file", "File")
+    object: Text("Armature", "Its armature, ROOT or subject, where the file has several", options=SKIP_SAVE)
     action: Text(
         "Action",
         "Name of its Action, where the armature has several; those of the file are listed",
@@ -70,9 +70,6 @@ class KEYMARK_OT_load_motion(BaseOperator, bpy.types.Operator):
 
     def run(self, context: Context) -> None:
         from ...core.mend.mend_motion import MendOptions, mend_motion
-        from ...core.take.conversion_settings import CharacterFile
-        from ...core.take.reference import REFERENCE_ENDINGS, read_reference
-        from ..actor.take_actor import leave_mode, select_alone
         from ..bridge.motions.import_motion import load_motion
         from ..bridge.motions.mend_action import add_actor
 
@@ -97,7 +94,7 @@ class KEYMARK_OT_mend_motion(JobOperator, bpy.types.Operator):
     """Mend the active armature's motion: jitter, sliding feet, exchanged sides; frames you posed stay"""
 
     bl_label = "Mend Motion"
-    requirements = (animated, idle)
+    requirements = (animated, need.idle)
 
     onto: Choice("Onto", "What is to move so", items=ONTO)
     posed: Text(
@@ -124,7 +121,6 @@ class KEYMARK_OT_mend_motion(JobOperator, bpy.types.Operator):
         return active.session_uid, found
 
     def finish(self, scene: Scene, result: "tuple[int, MendedAction]") -> None:
-        from ..actor.take_actor import select_alone
         from ..bridge.motions.mend_action import add_actor, write_mended
 
         uid, found = result

@@ -8,16 +8,7 @@ from ..bridge.character.read_character import needs_override
 from ..shell.panel import Popover, RowList, StepPanel, TakePanel, draw_progress, draw_sentence, right_end
 from ..shell.take_state import TakeState
 from ..shell.takes import active_take
-from .characters import (
-    active_character,
-    armature,
-    find_character,
-    full_title,
-    may_be_character,
-    missing_roles,
-    recognized,
-    shown_result,
-)
+from . import characters
 from .map_properties import PARTS, role_title
 
 
@@ -46,7 +37,6 @@ def _draw_parts(layout: UILayout, context: Context, character: PropertyGroup) ->
 
 
 def _labeled(column: UILayout, text: str) -> tuple[UILayout, UILayout]:
-    """A name, and the row to the right of it."""
     split = column.split(factor=0.29, align=True)
     name = right_end(split)
     name.label(text=text, translate=False)
@@ -97,9 +87,6 @@ def _draw_controls(layout: UILayout, character: PropertyGroup, part: str, shown:
         _labeled(column, "")[1].label(text=values, translate=False)
 
 
-# --- The panel of the step
-
-
 class KEYMARK_UL_characters(RowList, bpy.types.UIList):
     """Characters by their armatures; the icon tells whether one has the motion."""
 
@@ -119,6 +106,7 @@ class KEYMARK_PT_character(StepPanel, bpy.types.Panel):
     bl_label = "Character"
     step = "character"
     options = "KEYMARK_PT_retarget_options"
+    is_wrong = staticmethod(lambda s: s.has_outdated_result or any(one.problem for one in s.take.characters))
 
     @classmethod
     def summary(cls, state: TakeState) -> str:
@@ -127,19 +115,15 @@ class KEYMARK_PT_character(StepPanel, bpy.types.Panel):
         return f"{performing} of {len(all_)}" if len(all_) else ""
 
     @classmethod
-    def is_wrong(cls, state: TakeState) -> bool:
-        return state.has_outdated_result or any(each.problem for each in state.take.characters)
-
-    @classmethod
     def action(cls, state: TakeState) -> tuple[str, str]:
         if len(state.take.characters) or state.take.motion_action is None:
             return "keymark.retarget", "Retarget"
-        free = any(may_be_character(each) for each in bpy.context.view_layer.objects)
+        free = any(characters.may_be_character(each) for each in bpy.context.view_layer.objects)
         return ("keymark.add_character", "Add") if free else ("keymark.add_rigify_human", "Add Rigify Human")
 
     def draw_step(self, context: Context, body: UILayout, state: TakeState) -> None:
         take = state.take
-        character = find_character(context.scene)
+        character = characters.find_character(context.scene)
         if character is None:
             buttons = body.column()
             buttons.scale_y = 1.2
@@ -167,7 +151,11 @@ class KEYMARK_PT_character(StepPanel, bpy.types.Panel):
         if needs_override(character.armature):
             draw_sentence(column, context, "It is linked; an override can be animated here", "LINKED")
             column.operator("keymark.make_override", icon="LIBRARY_DATA_OVERRIDE")
-        elif unmet := character.problem or armature(context, state) or recognized(context, state):
+        elif (
+            unmet := character.problem
+            or characters.armature(context, state)
+            or characters.recognized(context, state)
+        ):
             draw_sentence(column, context, unmet, "ERROR", 6)
         row = column.row()
         row.scale_y = 1.4
@@ -192,7 +180,7 @@ def _draw_results(column: UILayout, context: Context, state: TakeState, characte
             show = row.operator("keymark.show_result", depress=result.action == performed, **words)
             show.index = index
         row.operator("keymark.remove_result", text="", icon="X").index = index
-    chosen = shown_result(character)
+    chosen = characters.shown_result(character)
     if chosen is None or chosen.action is None:
         return
     lines = column.column(align=True)
@@ -208,7 +196,7 @@ class KEYMARK_PT_retarget_options(Popover, bpy.types.Panel):
     bl_label = "Options of the Character"
 
     def draw(self, context: Context) -> None:
-        column, character = self.column(), find_character(context.scene)
+        column, character = self.column(), characters.find_character(context.scene)
         if character is None:
             column.label(text="Add a character first", icon="INFO")
             return
@@ -236,17 +224,17 @@ class KEYMARK_PT_character_map(TakePanel, bpy.types.Panel):
 
     @classmethod
     def poll(cls, context: Context) -> bool:
-        character = find_character(context.scene)
+        character = characters.find_character(context.scene)
         return super().poll(context) and character is not None and character.armature is not None
 
     def draw_header(self, context: Context) -> None:
-        character = active_character(context.scene)
+        character = characters.active_character(context.scene)
         doubtful = any(role.doubt for role in character.character_map.roles)
-        if doubtful or len(character.doubts) or missing_roles(character):
+        if doubtful or len(character.doubts) or characters.missing_roles(character):
             self.layout.label(text="", icon="ERROR")
 
     def draw(self, context: Context) -> None:
-        layout, character = self.layout, active_character(context.scene)
+        layout, character = self.layout, characters.active_character(context.scene)
         column = layout.column()
         column.operator("keymark.recognize_character", icon="VIEWZOOM")
         if character.suggested:
@@ -260,7 +248,7 @@ class KEYMARK_PT_character_map(TakePanel, bpy.types.Panel):
             draw_sentence(column, context, doubt.text, "ERROR", 5)
         if not len(character.character_map.roles):
             return
-        missing = [full_title(role) for role in missing_roles(character)]
+        missing = [characters.full_title(role) for role in characters.missing_roles(character)]
         if missing:
             draw_sentence(column, context, f"Without a bone: {', '.join(missing)}", "ERROR")
         _draw_parts(layout, context, character)

@@ -9,13 +9,15 @@ from ...core.arrays import Array
 from ...core.errors import MOST_NAMED, InputError
 from ...core.files.fields import listed
 from ...core.retarget.character import CHAINS
-from ..shell.base_operator import BaseOperator, idle, reported
+from ..bridge.character.read_character import read_character
+from ..shell import need
+from ..shell.base_operator import BaseOperator, reported
 from ..shell.fields import SKIP_SAVE, Choice, Text
 from ..shell.footage_view import NAVIGATION, FootageRequest, ask, follow_mouse, stop_asking
 from ..shell.job_operator import cancel_click
 from .characters import active_character, armature, find_character, full_title
 from .map_properties import map_of, role_named, show_map
-from .recognition import RoleBoneOperator, active_bone_of, give_bone, told
+from .recognition import RoleBoneOperator, active_bone_of, give_bone, role_words
 
 NEAR_PX = 25.0  # farthest that a click may be from a bone, at a UI scale of 1
 ENTER, ESCAPE = "Enter: {bone}, the active one   |   ", "Esc: Cancel"
@@ -49,10 +51,7 @@ def bone_under(context: Context, armature_object: Object, mouse_x: int, mouse_y:
 
 
 def nearest_segment(point: Array, ends: Array, depths: Array, near: float) -> int | None:
-    """Index of the segment (N, 2, 2) nearest to a point [px]; None where all are farther than `near`.
-
-    Of segments over each other the one nearest to the viewer, by depth (N,), counts.
-    """
+    """Index of the segment (N, 2, 2) near a point [px], the front one of several; None if none is."""
     start, along = ends[:, 0], ends[:, 1] - ends[:, 0]
     squared = np.maximum(np.sum(along**2, axis=1), 1e-12)
     share = np.clip(np.sum((point - start) * along, axis=1) / squared, 0.0, 1.0)
@@ -75,15 +74,15 @@ class KEYMARK_OT_pick_bone(RoleBoneOperator, BaseOperator, bpy.types.Operator):
     """Click on the bone in the viewport"""
 
     bl_label = "Pick Bone"
-    requirements = (armature, idle)
+    requirements = (armature, need.idle)
 
     bone: Text("Bone", "Name of the bone", options=SKIP_SAVE)
 
     @classmethod
     def description(cls, context: Context, properties: OperatorProperties) -> str:
-        known = told(context, properties.role)
-        asked = "Click on the bone in the viewport to choose it"
-        return f"{known}. {asked}" if known else asked
+        known = role_words(context, properties.role)
+        advice = "Click on the bone in the viewport to choose it"
+        return f"{known}. {advice}" if known else advice
 
     def invoke(self, context: Context, event: Event) -> set[str]:
         if self.bone or bpy.app.background:
@@ -117,7 +116,6 @@ class KEYMARK_OT_pick_bone(RoleBoneOperator, BaseOperator, bpy.types.Operator):
         return {"CANCELLED"}
 
     def _take(self, context: Context, bone: str | None) -> set[str]:
-        """Give the bone to the role; wait on where there is none."""
         if bone is None:
             self.report({"WARNING"}, "That is no bone of the character; click on one")
             return {"RUNNING_MODAL"}
@@ -196,13 +194,12 @@ class KEYMARK_OT_mirror_roles(BaseOperator, bpy.types.Operator):
     """Copy the bones and controls of one side's arm and leg to the other, by mirrored names and places"""
 
     bl_label = "Mirror"
-    requirements = (armature, idle)
+    requirements = (armature, need.idle)
 
     side: Choice("Direction", "Which side is copied", items=SIDES)
 
     def run(self, context: Context) -> set[str] | None:
         from ...core.retarget.maps.map_registry import mirrored_map
-        from ..bridge.character.read_character import read_character
 
         character = active_character(context.scene)
         before = map_of(character.character_map)

@@ -4,7 +4,7 @@ import bpy
 
 from ...core.take.conversion_settings import RetargetOptions
 from ..bridge.actor_bones import is_actor, moves_an_actor
-from ..shell.fields import HIDDEN, Choice, Entries, Group, Integer, Switch, Text, declared_property
+from ..shell.fields import HIDDEN, Choice, Entries, Group, Integer, Pointer, Switch, Text, declared_property
 from .characters import may_be_character
 from .map_properties import KEYMARK_PG_character_map
 from .recognition import armature_chosen
@@ -32,17 +32,11 @@ class KEYMARK_PG_result_line(bpy.types.PropertyGroup):
 class KEYMARK_PG_retargeted(bpy.types.PropertyGroup):
     """A result: the motion on the character as an Action."""
 
-    action: Group(
-        name="Action", description="The Action that holds the character's motion", type=bpy.types.Action
-    )
-    armature: Group(name="Armature", description="The armature that it moves", type=bpy.types.Object)
+    action: Pointer("Action", "The Action that holds the character's motion", bpy.types.Action)
+    armature: Pointer("Armature", "The armature that it moves", bpy.types.Object)
     source: Choice("Motion", "Which motion it was made from", items=SOURCES[1:])
-    source_action: Group(
-        name="Source Action", description="The Action it was made from", type=bpy.types.Action
-    )
-    source_actor: Group(
-        name="Of Actor", description="The actor that the source Action moves", type=bpy.types.Object
-    )
+    source_action: Pointer("Source Action", "The Action it was made from", bpy.types.Action)
+    source_actor: Pointer("Of Actor", "The actor that the source Action moves", bpy.types.Object)
     made_from: Text("Made From", "Digest of the motion it was made from", options=HIDDEN)
     lines: Entries(type=KEYMARK_PG_result_line)
 
@@ -73,10 +67,10 @@ class KEYMARK_PG_retarget_options(bpy.types.PropertyGroup):
 class KEYMARK_PG_character(bpy.types.PropertyGroup):
     """A character that performs a take's motion."""
 
-    armature: Group(
-        name="Armature",
-        description="The character's armature; any but Keymark's own actors",
-        type=bpy.types.Object,
+    armature: Pointer(
+        "Armature",
+        "The character's armature; any but Keymark's own actors",
+        bpy.types.Object,
         poll=lambda _character, candidate: may_be_character(candidate),
         update=lambda character, _context: armature_chosen(character),
     )
@@ -85,16 +79,16 @@ class KEYMARK_PG_character(bpy.types.PropertyGroup):
     suggested: Text("Map at Hand", "Title of a map in your library folder for this armature's bones")
     character_map: Group(type=KEYMARK_PG_character_map)
     source: Choice("Motion", "Which motion the character performs", items=SOURCES)
-    source_action: Group(
-        name="Action",
-        description="The Action of a Keymark actor that the character performs",
-        type=bpy.types.Action,
+    source_action: Pointer(
+        "Action",
+        "The Action of a Keymark actor that the character performs",
+        bpy.types.Action,
         poll=lambda _character, action: moves_an_actor(action),
     )
-    source_actor: Group(
-        name="Of Actor",
-        description="The actor that the Action moves; empty for the take's own",
-        type=bpy.types.Object,
+    source_actor: Pointer(
+        "Of Actor",
+        "The actor that the Action moves; empty for the take's own",
+        bpy.types.Object,
         poll=lambda _character, candidate: is_actor(candidate),
     )
     options: Group(type=KEYMARK_PG_retarget_options)

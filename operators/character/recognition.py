@@ -4,23 +4,17 @@ from contextlib import suppress
 from pathlib import Path
 
 import bpy
-from bpy.types import Context, Event, OperatorProperties, PropertyGroup
+from bpy.types import Context, Event, Operator, OperatorProperties, PropertyGroup
 
 from ...core.errors import InputError, KeymarkError
 from ...core.retarget.character import ROLES
+from ...core.retarget.maps.character_map import write_character_map
+from ..bridge.character.read_character import read_character
 from ..library import registry
-from ..shell.base_operator import BaseOperator, browse, capitalized, chosen_file, idle, reported, warn
-from ..shell.fields import HIDDEN, SKIP_SAVE, Integer, Switch, Text
-from .characters import (
-    active_character,
-    add_lines,
-    armature,
-    find_character,
-    full_title,
-    recognized,
-    require_character_armature,
-    with_map,
-)
+from ..shell import need
+from ..shell.base_operator import BaseOperator, browse, capitalized, chosen_file, operator, reported, warn
+from ..shell.fields import HIDDEN, SKIP_SAVE, File, Integer, Switch, Text
+from . import characters
 from .map_properties import clear_map, map_of, role_named, show_map
 
 
@@ -57,9 +51,9 @@ def active_bone_of(character: PropertyGroup) -> str | None:
     return active.name if active is not None else None
 
 
-def told(context: Context, role: str) -> str:
+def role_words(context: Context, role: str) -> str:
     """Where a role's bones come from and why they are doubtful, for a tooltip; empty where unknown."""
-    character = find_character(context.scene)
+    character = characters.find_character(context.scene)
     if character is None or role not in character.character_map.roles:
         return ""
     shown = character.character_map.roles[role]
@@ -70,7 +64,7 @@ def told(context: Context, role: str) -> str:
         found = "chosen by you"
     if not any(entry.bone for entry in shown.bones):
         found = "no bone"
-    return f"{full_title(role).capitalize()}: {found}"
+    return f"{characters.full_title(role).capitalize()}: {found}"
 
 
 def recognize_bones(character: PropertyGroup) -> None:
@@ -80,9 +74,8 @@ def recognize_bones(character: PropertyGroup) -> None:
         InputError: It is none; properties stay.
     """
     from ...core.retarget.recognition.recognize import recognize
-    from ..bridge.character.read_character import read_character
 
-    require_character_armature(character.armature)
+    characters.require_character_armature(character.armature)
     found = recognize(read_character(character.armature))
     # A doubt about a role alone begins with its name.
     words = {sentence: sentence.partition(" ")[0] for sentence in found.doubts}
@@ -95,7 +88,7 @@ def recognize_bones(character: PropertyGroup) -> None:
 def show_doubts(character: PropertyGroup, doubts: tuple[str, ...] = ()) -> None:
     """Show what is doubtful about a character's map as a whole."""
     character.doubts.clear()
-    add_lines(character.doubts, doubts, "ERROR")
+    characters.add_lines(character.doubts, doubts, "ERROR")
 
 
 def say_recognized(operator: BaseOperator, character: PropertyGroup) -> None:
@@ -109,10 +102,7 @@ def say_recognized(operator: BaseOperator, character: PropertyGroup) -> None:
 
 
 def armature_chosen(character: PropertyGroup) -> None:
-    """Find out about the armature that was chosen: the map it has elsewhere in the file, or recognition.
-
-    A person may be in the middle of choosing: what is wrong is shown in the panel and not raised.
-    """
+    """Find the armature's map elsewhere, or recognize it; what is wrong, the panel shows."""
     clear_map(character.character_map)
     show_doubts(character)
     character.problem = character.suggested = ""
@@ -122,7 +112,7 @@ def armature_chosen(character: PropertyGroup) -> None:
         if character.results[index].armature != character.armature:
             character.results.remove(index)
     character.active_result = max(0, len(character.results) - 1)
-    known = with_map(character.armature, beside=character)
+    known = characters.with_map(character.armature, beside=character)
     if known is not None:
         show_map(character.character_map, map_of(known.character_map))
         return
@@ -143,25 +133,21 @@ def map_folders() -> list[Path]:
     return [registry.own_folder()]
 
 
-class KEYMARK_OT_recognize_character(BaseOperator, bpy.types.Operator):
+@operator("Recognize", characters.armature, need.idle)
+def recognize_character(operator: Operator, context: Context, take: PropertyGroup) -> None:
     """Find out which bones play which role, by their names and places; replaces what you chose before"""
-
-    bl_label = "Recognize"
-    requirements = (armature, idle)
-
-    def run(self, context: Context) -> None:
-        character = active_character(context.scene)
-        recognize_bones(character)
-        say_recognized(self, character)
+    character = characters.active_character(context.scene)
+    recognize_bones(character)
+    say_recognized(operator, character)
 
 
 class KEYMARK_OT_load_map(BaseOperator, bpy.types.Operator):
     """Load which bones play which role from a file, instead of what was recognized"""
 
     bl_label = "Load Map"
-    requirements = (armature, idle)
+    requirements = (characters.armature, need.idle)
 
-    filepath: Text("File Path", "A character map", subtype="FILE_PATH", options=SKIP_SAVE)
+    filepath: File("A character map")
     title: Text("Title", "Title of a map in your library folder, instead of a file", options=SKIP_SAVE)
     filter_glob: Text(default="*.json", options=HIDDEN)
     filter_folder: Switch(default=True, options=HIDDEN)
@@ -179,9 +165,8 @@ class KEYMARK_OT_load_map(BaseOperator, bpy.types.Operator):
 
     def run(self, context: Context) -> None:
         from ...core.retarget.maps.map_registry import check_map, find_map
-        from ..bridge.character.read_character import read_character
 
-        character = active_character(context.scene)
+        character = characters.active_character(context.scene)
         by_title = self.title and not self.filepath
         named = self.title if by_title else chosen_file(self, "a character map, .json")
         found = find_map(named, map_folders())
@@ -197,7 +182,7 @@ class KEYMARK_OT_save_map(BaseOperator, bpy.types.Operator):
 
     bl_label = "Save Map"
     bl_options = {"REGISTER"}
-    requirements = (armature, recognized, idle)
+    requirements = (characters.armature, characters.recognized, need.idle)
 
     filepath: Text("File", "File to write", subtype="FILE_PATH")
     check_existing: Switch(default=True, options=HIDDEN)
@@ -207,7 +192,7 @@ class KEYMARK_OT_save_map(BaseOperator, bpy.types.Operator):
         from ...core.retarget.maps.map_registry import map_path
 
         with reported(self):
-            title = _title(active_character(context.scene))
+            title = _title(characters.active_character(context.scene))
             self.filepath = str(map_path(map_folders()[0], title))
             context.window_manager.fileselect_add(self)
             return {"RUNNING_MODAL"}
@@ -220,17 +205,15 @@ class KEYMARK_OT_save_map(BaseOperator, bpy.types.Operator):
         return changed
 
     def draw(self, context: Context) -> None:
-        character, column = active_character(context.scene), self.layout.column()
+        character, column = characters.active_character(context.scene), self.layout.column()
         if character is not None:
             for name in ("title", "author", "license", "description", "tags"):
                 column.prop(character.character_map, name)
 
     def run(self, context: Context) -> None:
-        from ...core.retarget.maps.character_map import write_character_map
-
         if not self.filepath:
             raise InputError("no file is named to save the map to; give filepath")
-        character = active_character(context.scene)
+        character = characters.active_character(context.scene)
         character.character_map.title = _title(character)
         path = Path(bpy.path.ensure_ext(bpy.path.abspath(self.filepath), ".json"))
         write_character_map(path, map_of(character.character_map))

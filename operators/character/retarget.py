@@ -1,50 +1,34 @@
 """Give the take's motion to a character."""
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import bpy
 from bpy.types import Context, Operator, PropertyGroup, Scene
 
 from ...core.errors import InputError
-from ...core.progress import stretch
+from ...core.progress import Job, stretch
+from ...core.retarget.quality import Quality
 from ...core.take.conversion_settings import RetargetOptions
 from ..bridge.actions import assign_action
 from ..finish.bake_motion import mark_motion_asset
-from ..shell.base_operator import BaseOperator, idle, warn
+from ..shell import need
+from ..shell.base_operator import BaseOperator, operator, warn
 from ..shell.fields import Integer, read_declared
 from ..shell.job_operator import JobOperator
 from ..shell.take_state import TakeState, digest_of
 from ..shell.takes import active_take, take_by_identifier
-from .characters import (
-    SourceMotion,
-    active_character,
-    add_lines,
-    add_result,
-    armature,
-    character,
-    editable,
-    recognized,
-    result,
-    result_to_replace,
-    shown_result,
-    source,
-    source_of,
-)
+from . import characters
 from .map_properties import map_of
 
-if TYPE_CHECKING:
-    from ...core.progress import Job
-    from ...core.retarget.quality import Quality
 
-
-def retarget_take(scene: Scene) -> "Job[tuple[Any, ...]]":
+def retarget_take(scene: Scene) -> Job[tuple[Any, ...]]:
     """Put the motion of the active take onto its chosen character; the scene stays as it is."""
     from ..bridge.character.retarget import read_source, retarget
 
     take = active_take(scene)
-    character = active_character(scene)
-    motion = source_of(take, character)
+    character = characters.active_character(scene)
+    motion = characters.source_of(take, character)
     identifier, armature_object = take.identifier, character.armature
     made_from = digest_of(motion.action)
     uids = armature_object.session_uid, motion.action.session_uid, motion.actor.session_uid
@@ -60,22 +44,24 @@ def keep_retargeted(operator: Operator, scene: Scene, result: tuple[Any, ...]) -
     """Let the character perform the motion; returns a sentence on it."""
     identifier, uids, kind, title, made_from, retargeted = result
     take = take_by_identifier(scene, identifier)
-    characters = {each.armature.session_uid: each for each in take.characters if each.armature is not None}
+    armatures = {each.armature.session_uid: each for each in take.characters if each.armature is not None}
     there = {each.session_uid: each for each in (*bpy.data.actions, *bpy.data.objects)}
-    character, source_action, actor = characters.get(uids[0]), there.get(uids[1]), there.get(uids[2])
+    character, source_action, actor = armatures.get(uids[0]), there.get(uids[1]), there.get(uids[2])
     if character is None or source_action is None or actor is None:
         raise InputError(
             "the character or its motion was removed while the job ran; nothing was changed, run it again"
         )
     earlier = None
     if not character.keep_earlier:
-        earlier = result_to_replace(character, kind, source_action)
+        earlier = characters.result_to_replace(character, kind, source_action)
     into = earlier.action if earlier is not None else f"{title} {character.armature.name}"
     action = retargeted.write(scene, into)
-    listed = add_result(character, SourceMotion(kind, source_action, actor, title), action, made_from)
+    listed = characters.add_result(
+        character, characters.SourceMotion(kind, source_action, actor, title), action, made_from
+    )
     listed.lines.clear()
-    add_lines(listed.lines, figures(retargeted.quality), "INFO")
-    add_lines(listed.lines, (*retargeted.warnings, *retargeted.notes), "ERROR")
+    characters.add_lines(listed.lines, figures(retargeted.quality), "INFO")
+    characters.add_lines(listed.lines, (*retargeted.warnings, *retargeted.notes), "ERROR")
     for note in (*retargeted.warnings, *retargeted.notes):
         warn(operator, note)
     return f"'{character.armature.name}' performs '{action.name}'"
@@ -85,9 +71,16 @@ class KEYMARK_OT_retarget(JobOperator, bpy.types.Operator):
     """Let the character perform the motion, as an Action of its own"""
 
     bl_label = "Retarget"
-    requirements = (character, source, armature, editable, recognized, idle)
+    requirements = (
+        characters.character,
+        characters.source,
+        characters.armature,
+        characters.editable,
+        characters.recognized,
+        need.idle,
+    )
 
-    def start(self, scene: Scene) -> "Job[tuple[Any, ...]]":
+    def start(self, scene: Scene) -> Job[tuple[Any, ...]]:
         return retarget_take(scene)
 
     def finish(self, scene: Scene, result: tuple[Any, ...]) -> None:
@@ -101,7 +94,7 @@ def options_of(group: PropertyGroup) -> RetargetOptions:
     return options if group.keys == "TOLERANCE" else replace(options, tolerance_mm=0.0)
 
 
-def figures(quality: "Quality") -> list[str]:
+def figures(quality: Quality) -> list[str]:
     """Lines on feet, floor, hands (or limbs, where the hands reach nothing) and keys."""
     lines = []
     if quality.skate_mm is not None:
@@ -121,12 +114,18 @@ class KEYMARK_OT_show_result(BaseOperator, bpy.types.Operator):
     """Animate the character by this result"""
 
     bl_label = "Show Result"
-    requirements = (character, result, armature, editable, idle)
+    requirements = (
+        characters.character,
+        characters.result,
+        characters.armature,
+        characters.editable,
+        need.idle,
+    )
 
     index: Integer("Index", "Number of the result in the list, from 0", min=0)
 
     def run(self, context: Context) -> None:
-        character = active_character(context.scene)
+        character = characters.active_character(context.scene)
         if self.index >= len(character.results) or character.results[self.index].action is None:
             raise InputError(f"there is no result number {self.index}; retarget the motion again")
         assign_action(character.armature, character.results[self.index].action)
@@ -137,12 +136,12 @@ class KEYMARK_OT_remove_result(BaseOperator, bpy.types.Operator):
     """Remove this result from the list; its Action stays in the file, for you to delete"""
 
     bl_label = "Remove Result"
-    requirements = (character, idle)
+    requirements = (characters.character, need.idle)
 
     index: Integer("Index", "Number of the result in the list, from 0", min=0)
 
     def run(self, context: Context) -> None:
-        chosen = active_character(context.scene)
+        chosen = characters.active_character(context.scene)
         if self.index >= len(chosen.results):
             count = len(chosen.results)
             raise InputError(f"there is no result number {self.index}; the character has {count}")
@@ -150,19 +149,13 @@ class KEYMARK_OT_remove_result(BaseOperator, bpy.types.Operator):
         chosen.active_result = max(0, min(chosen.active_result, len(chosen.results) - 1))
 
 
-class KEYMARK_OT_mark_result_asset(BaseOperator, bpy.types.Operator):
+@operator("Mark Asset", characters.character, characters.result, need.idle)
+def mark_result_asset(operator: Operator, context: Context, take: PropertyGroup) -> None:
     """Mark the character's motion as an asset, with the catalog, tags and details of the step Export"""
-
-    bl_label = "Mark Asset"
-    requirements = (character, result, idle)
-
-    def run(self, context: Context) -> None:
-        take, made = active_take(context.scene), shown_result(active_character(context.scene))
-        if made is None or made.action is None:
-            raise InputError("the result's Action has been deleted; retarget the motion again")
-        mark_motion_asset(context, take, made.action, made.source_action, made.source_actor)
-        if TakeState(take).of_earlier(made):
-            self.report(
-                {"WARNING"}, "The character's motion is of an earlier one; retarget it for the newest"
-            )
-        self.report({"INFO"}, f"'{made.action.name}' is an asset now; save the .blend to keep it")
+    made = characters.shown_result(characters.active_character(context.scene))
+    if made is None or made.action is None:
+        raise InputError("the result's Action has been deleted; retarget the motion again")
+    mark_motion_asset(context, take, made.action, made.source_action, made.source_actor)
+    if TakeState(take).of_earlier(made):
+        operator.report({"WARNING"}, "The character's motion is of an earlier one; retarget for the newest")
+    operator.report({"INFO"}, f"'{made.action.name}' is an asset now; save the .blend to keep it")

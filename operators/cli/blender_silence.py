@@ -10,11 +10,7 @@ from io import TextIOWrapper
 
 @contextmanager
 def blender_silence(debug: bool) -> Iterator[None]:
-    """Discard what C code writes on standard output and standard error meanwhile.
-
-    Blender writes past Python, on the file descriptors themselves; its messages would make the one JSON
-    object of `--json` unreadable.
-    """
+    """Discard meanwhile what C code writes past Python: `--json` is to be one object."""
     _flush()
     try:
         kept = [os.dup(1), os.dup(2)]
@@ -57,10 +53,7 @@ def _flush() -> None:
 
 @contextmanager
 def codec_silence(debug: bool) -> Iterator[None]:
-    """Discard what C code writes on standard error meanwhile; Python's own lines still come through.
-
-    Image decoders write warnings about damaged files there, beside our one sentence.
-    """
+    """Discard what C code, as image decoders, writes on standard error meanwhile, but not Python's lines."""
     before, number = sys.stderr, -1
     with suppress(AttributeError, OSError, ValueError):  # a replacement without one, or a closed stream
         number = before.fileno()

@@ -103,9 +103,6 @@ def require_blender(needing: str) -> None:
         )
 
 
-# --- Output of a command: text wrapped to the terminal, one object for `--json`, and progress
-
-
 FEWEST_COLUMNS = 60
 """Narrower terminals are wrapped as if they had this many."""
 JOB_SHARE = 0.9
@@ -255,10 +252,7 @@ class Console:
             self._bar = None
 
     def _write(self, text: str) -> None:
-        """Write a line; where that fails, write nothing more and go on with the work.
-
-        It fails where the reader has closed the pipe, the disk of a log is full, or the terminal is gone.
-        """
+        """Write a line; where pipe, disk or terminal is gone, write nothing more and go on with the work."""
         encoding = sys.stdout.encoding or "utf-8"
         try:
             print(text.encode(encoding, "backslashreplace").decode(encoding), flush=True)
@@ -272,7 +266,6 @@ class Console:
 
 
 def _bar() -> Any:
-    """A progress bar, or None where there is no terminal or no tqdm."""
     if sys.stderr is None or not sys.stderr.isatty():
         return None
     try:

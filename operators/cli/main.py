@@ -110,10 +110,7 @@ def _sigterm_as_interrupt() -> Iterator[None]:
 
 
 def _end_process(status: int) -> None:
-    """End the process at once where it would wait for ever; else return.
-
-    Blender 4.5 as a Python module may hang at its exit once it has read or written glTF.
-    """
+    """End the process at once where Blender 4.5 as a module may hang, as it does after glTF; else return."""
     blender = sys.modules.get("bpy")
     if blender is None or blender.app.binary_path or blender.app.version >= (5, 0):
         return
@@ -124,9 +121,6 @@ def _end_process(status: int) -> None:
             stream.flush()
     shutil.rmtree(blender.app.tempdir, ignore_errors=True)
     os._exit(status)
-
-
-# --- The parser
 
 
 DESCRIPTION = "Turns one video of a performer, in colored markers or any clothes, into an animated armature."

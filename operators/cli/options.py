@@ -10,13 +10,11 @@ from typing import Any
 from ...core.files.kinds import Choice, Flag, Nullable, Number, Whole, relative_path
 from ...core.files.records import Record, declared, descriptions
 from ...core.prior.texts import EVERY_LIBRARY
+from ...core.take import conversion_settings
 from ...core.take.conversion_settings import (
-    KINDS,
-    SHOT,
     CharacterFile,
     CharacterSettings,
     ConversionSettings,
-    LimbKeys,
     RetargetOptions,
 )
 from ...core.take.evidence import EVIDENCE
@@ -41,11 +39,7 @@ def output(metavar: str, words: str, *, required: bool = True, replace: str = ""
 def field_option(
     record: type[Record], field: str, usage: str, condition: str = "", **settings: Any
 ) -> Argument:
-    """The option of a record's field; None stands for one that is left out.
-
-    Choices and numbers are those of the declaration, the help is the field's docstring; `condition` says for
-    which takes the option counts.
-    """
+    """The option of a record's field, as that declares it; None if left out, or by `condition`."""
     kind = declared(record)[field].kind
     kind = kind.item if isinstance(kind, Nullable) else kind
     words = descriptions(record)[field].rstrip(".")
@@ -78,21 +72,19 @@ def jobs_option(most: int, words: str) -> Argument:
 def _kinds(text: str) -> tuple[str, ...] | None:
     """The kinds of evidence; None for an empty text, which farms pass for a setting that is not filled in."""
     kinds = [kind.strip().replace("-", "_") for kind in text.split(",")]
-    return KINDS.read(kinds, WHERE, "--evidence") if text else None
+    return conversion_settings.KINDS.read(kinds, WHERE, "--evidence") if text else None
 
 
 def _name_in_take(text: str) -> Path | None:
-    """A path within a take; None for an empty text, as above."""
     valid = "the name that the file has in every take, as in keypoints.json"
     name: Path | None = relative_path(valid).read(text, WHERE, "--keypoints") if text else None
     return name
 
 
 def _frames(text: str) -> tuple[int, int]:
-    """The first and last frame of FIRST-LAST."""
     found = re.fullmatch(r"(-?\d{1,9})-(-?\d{1,9})", text.strip(), re.ASCII)
     value: Any = text if found is None else [int(number) for number in found.groups()]
-    read: tuple[int, int] = SHOT.read(value, WHERE, "--frames")
+    read: tuple[int, int] = conversion_settings.SHOT.read(value, WHERE, "--frames")
     return read
 
 
@@ -140,7 +132,7 @@ RETARGET_OPTIONS = (
         "--limbs",
         "controls of arms and legs that are keyed; both, the default, shows IK. A limb without IK "
         "controls is keyed in FK",
-        choices=tuple(map(str, LimbKeys)),
+        choices=tuple(map(str, conversion_settings.LimbKeys)),
     ),
     *(
         field_option(

@@ -5,26 +5,19 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import bpy
-from bpy.types import (
-    Action,
-    Context,
-    Event,
-    Object,
-    Operator,
-    OperatorProperties,
-    PropertyGroup,
-    Scene,
-    UILayout,
-)
+from bpy.types import Action, Context, Event, Object, Operator, OperatorProperties, PropertyGroup, Scene
 
 from ...core.errors import InputError
 from ...core.files.fields import listed
+from ...core.progress import Job
 from ...core.progress import run as run_job
 from ..bridge.actions import assign_action
 from ..bridge.actor_bones import moved_by
 from ..bridge.asset_catalogs import catalog_file, ensure_catalog
-from ..bridge.export_formats import FORMATS, ExportFormat, export_motion
-from ..shell.base_operator import BaseOperator, actor, idle, motion, of_take, warn, warn_if_outdated
+from ..bridge.export_formats import FORMATS, export_motion
+from ..bridge.rig import absence_note, motion_frames, shown_motion
+from ..shell import need
+from ..shell.base_operator import BaseOperator, operator, warn, warn_if_outdated
 from ..shell.fields import HIDDEN, Choice, Switch, Text
 from ..shell.job_operator import JobOperator
 from ..shell.notes import give_notices
@@ -32,7 +25,6 @@ from ..shell.take_state import TakeState, digest_of
 from ..shell.takes import active_take, actor_of, refresh_asset_browsers, take_by_identifier
 
 if TYPE_CHECKING:
-    from ...core.progress import Job
     from ..bridge.finish_motion import Finished
 
 
@@ -43,17 +35,9 @@ def mark_motion_asset(
     pictured: Action | None,
     actor: Object | None = None,
 ) -> None:
-    """Add the catalog to its file, then mark an Action with the details that the take's finish has.
-
-    The picture is drawn from the pictured Action of the actor, the take's by default; None keeps the present.
-
-    Raises:
-        InputError: The catalog is unusable, or the pictured Action is not the actor's.
-        ConversionError: The catalog cannot be written.
-    """
+    """Mark an Action as an asset of the take's details and catalog, pictured as the actor performs one."""
     from ...core.report.mannequin import posture_picture
     from ..bridge.assets import AssetDetails, mark_asset
-    from ..bridge.rig import shown_motion
 
     settings, performer = take.finish, actor or take.armature
     picture = None
@@ -76,7 +60,7 @@ class FinishedTake:
     finished: "Finished"
 
 
-def bake(scene: Scene) -> "Job[FinishedTake]":
+def bake(scene: Scene) -> Job[FinishedTake]:
     """Finish the motion of the active take; the scene stays as it is."""
     from ..bridge.finish_motion import FinishOptions, finish_motion
 
@@ -118,30 +102,25 @@ class KEYMARK_OT_bake_motion(JobOperator, bpy.types.Operator):
     """Make the final Action, anew: your corrected motion with few keys, its resting feet standing still"""
 
     bl_label = "Bake Final Action"
-    requirements = (actor, motion, idle)
+    requirements = (need.actor, need.motion, need.idle)
 
-    def start(self, scene: Scene) -> "Job[FinishedTake]":
+    def start(self, scene: Scene) -> Job[FinishedTake]:
         return bake(scene)
 
     def finish(self, scene: Scene, result: FinishedTake) -> None:
         self.report({"INFO"}, keep_baked(self, scene, result))
 
 
-class KEYMARK_OT_mark_asset(BaseOperator, bpy.types.Operator):
+@operator("Mark Asset", need.actor, need.motion, need.idle)
+def mark_asset(operator: Operator, context: Context, take: PropertyGroup) -> None:
     """Mark the motion, the final Action if there is one, as an asset with catalog, tags and picture"""
-
-    bl_label = "Mark Asset"
-    requirements = (actor, motion, idle)
-
-    def run(self, context: Context) -> None:
-        take = active_take(context.scene)
-        action = take.finish.action or take.motion_action
-        mark_motion_asset(context, take, action, action)
-        warn_if_outdated(self, take)
-        self.report({"INFO"}, f"'{action.name}' is an asset now; save the .blend to keep it")
+    action = take.finish.action or take.motion_action
+    mark_motion_asset(context, take, action, action)
+    warn_if_outdated(operator, take)
+    operator.report({"INFO"}, f"'{action.name}' is an asset now; save the .blend to keep it")
 
 
-performance = of_take(lambda state: state.performers, "Reconstruct the motion first")
+performance = need.of_take(lambda state: state.performers, "Reconstruct the motion first")
 
 
 class KEYMARK_OT_export_motion(BaseOperator, bpy.types.Operator):
@@ -161,7 +140,7 @@ class KEYMARK_OT_export_motion(BaseOperator, bpy.types.Operator):
     filepath: Text("File", "File to write", subtype="FILE_PATH")
     filter_glob: Text(default=";".join(f"*{listed.suffix}" for listed in FORMATS.values()), options=HIDDEN)
 
-    requirements = (performance, idle)
+    requirements = (performance, need.idle)
 
     @classmethod
     def description(cls, context: Context, properties: OperatorProperties) -> str:
@@ -203,7 +182,17 @@ class KEYMARK_OT_export_motion(BaseOperator, bpy.types.Operator):
         who, action = performing[name]
         path = Path(bpy.path.ensure_ext(bpy.path.abspath(self.filepath), chosen.suffix))
         if who == take.armature:
-            self._write_actor(scene, take, chosen, path)
+            if self.bake and not chosen.of_actor and TakeState(take).newest[0] == "MOTION":
+                keep_baked(self, scene, run_job(bake(scene)))
+                if not bpy.app.background:
+                    bpy.ops.ed.undo_push(message="Bake Final Action")
+            action = take.finish.action or take.motion_action
+            frames = motion_frames(who, action)
+            export_motion(scene, who, action, (int(frames[0]), int(frames[-1])), chosen, path)
+            warn_if_outdated(self, take)
+            away = absence_note(who, take.motion_action, scene.render.fps / scene.render.fps_base)
+            if away:
+                warn(self, away)
         else:
             span = int(action.frame_range[0]), int(action.frame_range[1])
             export_motion(scene, who, action, span, chosen, path, moved_by(scene, who))
@@ -212,25 +201,8 @@ class KEYMARK_OT_export_motion(BaseOperator, bpy.types.Operator):
                 warn(self, f"'{who.name}' performs an earlier motion; retarget again for the newest")
         self.report({"INFO"}, f"Wrote what '{who.name}' performs: {path}")
 
-    def _write_actor(self, scene: Scene, take: PropertyGroup, chosen: ExportFormat, path: Path) -> None:
-        """Write the actor's final Action, baked anew where there is none of the newest motion."""
-        from ..bridge.rig import absence_note, motion_frames
 
-        if self.bake and not chosen.of_actor and TakeState(take).newest[0] == "MOTION":
-            keep_baked(self, scene, run_job(bake(scene)))
-            if not bpy.app.background:
-                bpy.ops.ed.undo_push(message="Bake Final Action")
-        action = take.finish.action or take.motion_action
-        render = scene.render
-        frames = motion_frames(take.armature, action)
-        export_motion(scene, take.armature, action, (int(frames[0]), int(frames[-1])), chosen, path)
-        warn_if_outdated(self, take)
-        away = absence_note(take.armature, take.motion_action, render.fps / render.fps_base)
-        if away:
-            warn(self, away)
-
-
-def draw_who(layout: UILayout, take: PropertyGroup, of_actor: bool = False) -> None:
+def draw_who(layout: bpy.types.UILayout, take: PropertyGroup, of_actor: bool = False) -> None:
     """Draw the choice of whose motion is exported; of a format that holds the actor's alone, that it does."""
     row = layout.row()
     row.use_property_split, row.use_property_decorate = True, False

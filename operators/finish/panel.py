@@ -17,19 +17,9 @@ class KEYMARK_PT_finish(StepPanel, bpy.types.Panel):
     bl_label = "Export"
     step = "finish"
     options = "KEYMARK_PT_finish_options"
-
-    @classmethod
-    def summary(cls, state: TakeState) -> str:
-        made = state.take.finish
-        return "" if made.action is None else f"{made.keys_after} keys"
-
-    @classmethod
-    def is_wrong(cls, state: TakeState) -> bool:
-        return state.final_is_outdated
-
-    @classmethod
-    def action(cls, state: TakeState) -> tuple[str, str]:
-        return "keymark.bake_motion", "Bake"
+    summary = staticmethod(lambda s: f"{s.take.finish.keys_after} keys" if s.take.finish.action else "")
+    is_wrong = staticmethod(lambda s: s.final_is_outdated)
+    action = staticmethod(lambda _: ("keymark.bake_motion", "Bake"))
 
     def draw_step(self, context: Context, body: UILayout, state: TakeState) -> None:
         take = state.take

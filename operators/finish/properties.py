@@ -3,7 +3,7 @@
 import bpy
 from bpy.types import PropertyGroup
 
-from ..shell.fields import HIDDEN, Choice, Group, Integer, Number, Switch, Text
+from ..shell.fields import HIDDEN, TOLERANCE, Choice, Integer, Number, Pointer, Switch, Text
 from ..shell.take_state import TakeState
 
 KEYS = (
@@ -42,12 +42,7 @@ class KEYMARK_PG_finish(bpy.types.PropertyGroup):
         "Tolerance (mm)",
         "Largest distance of any joint or end of the body from the reconstructed motion",
         default=5.0,
-        min=0.1,
-        soft_min=1.0,
-        soft_max=50.0,
-        max=500.0,
-        precision=1,
-        step=50,
+        **TOLERANCE,
     )
     shared: Choice("Keyed", "Whether bones are keyed each on its own or together", items=SHARED)
     plant_feet: Switch(
@@ -73,10 +68,8 @@ class KEYMARK_PG_finish(bpy.types.PropertyGroup):
         get=_chosen,
         set=lambda finish, index: setattr(finish, "performer", _names(finish)[index] if index else ""),
     )
-    action: Group(
-        name="Final",
-        description="The Action that holds the finished motion, in keys of your own to edit",
-        type=bpy.types.Action,
+    action: Pointer(
+        "Final", "The Action that holds the finished motion, in keys of your own to edit", bpy.types.Action
     )
     made_from: Text("Made From", "Digest of the motion it was made from", options=HIDDEN)
     keys_before: Integer("Keys Before", options=HIDDEN)

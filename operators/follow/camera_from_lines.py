@@ -10,34 +10,18 @@ import numpy as np
 from bpy.types import Context, Event, OperatorProperties, PropertyGroup
 
 from ...core.body.actor import Actor
+from ...core.body.kinematics import Body
 from ...core.camera.camera_evidence import Uprights
 from ...core.errors import InputError, KeymarkError
-from ..footage.found_camera import (
-    CLICKED_PX,
-    HEIGHT,
-    NEAR_PX,
-    Drawing,
-    DrawnLine,
-    Pixel,
-    evidence_of,
-    fit_take,
-    read_lines,
-    show,
-    store_lines,
-    values,
-    write_fit,
-)
+from ..bridge.footage import still_camera as still_camera_of
+from ..footage import found_camera
+from ..footage.found_camera import HEIGHT, NEAR_PX, DrawnLine, Pixel
+from ..footage.load_footage import lens_is_guess
 from ..footage.properties import KINDS, still_camera
-from ..shell.base_operator import BaseOperator, camera, footage, idle, warn
+from ..shell import footage_view, need
+from ..shell.base_operator import BaseOperator, warn
 from ..shell.fields import SKIP_SAVE, Choice
-from ..shell.footage_view import (
-    ClickSequence,
-    FootageRequest,
-    FootageView,
-    follow_mouse,
-    ui_scale,
-    view_of_footage_under,
-)
+from ..shell.footage_view import ClickSequence, FootageRequest, FootageView, ui_scale
 from ..shell.results import reading_of
 from ..shell.take_state import TakeState
 from ..shell.takes import active_take, footage_of, redraw_sidebars_soon
@@ -49,7 +33,6 @@ if TYPE_CHECKING:
 
 def standing_performer(take: PropertyGroup, stature_m: float) -> Uprights:
     """Moments in which somebody of that stature is upright; none without keypoints of this clip."""
-    from ...core.body.kinematics import Body
     from ...core.detect.standing_moments import standing_keypoints
     from ..bridge.take_from_scene import frame_in_footage
 
@@ -81,7 +64,7 @@ class KEYMARK_OT_camera_from_lines(ClickSequence, BaseOperator, bpy.types.Operat
     """Find the camera from lines that you draw over the picture; the floor's grid shows the result"""
 
     bl_label = "Camera from Lines"
-    requirements = (footage, camera, still_camera, idle)
+    requirements = (need.footage, need.camera, still_camera, need.idle)
 
     kind: Choice("Begin with", "The lines that are drawn first", items=KINDS, options=SKIP_SAVE)
 
@@ -101,16 +84,20 @@ class KEYMARK_OT_camera_from_lines(ClickSequence, BaseOperator, bpy.types.Operat
 
     def prepare(self, context: Context, take: PropertyGroup) -> None:
         of_performer = self.kind == HEIGHT
-        self._drawing = Drawing(
-            self.kind, of_performer, read_lines(take), stature_m=take.stature, of_performer=of_performer
+        self._drawing = found_camera.Drawing(
+            self.kind,
+            of_performer,
+            found_camera.read_lines(take),
+            stature_m=take.stature,
+            of_performer=of_performer,
         )
-        show(self._drawing)
+        found_camera.show(self._drawing)
 
     def modal(self, context: Context, event: Event) -> set[str]:
         drawing, pressed = self._drawing, event.value == "PRESS"
         self._mouse = np.array([event.mouse_x, event.mouse_y], dtype=np.float64)
         if event.type in ("MOUSEMOVE", "LEFTMOUSE"):
-            follow_mouse(context, event)
+            footage_view.follow_mouse(context, event)
             return self._point(context, event)
         if pressed and event.type in ("X", "DEL"):
             drawing.remove(self._distance_of_line(context))
@@ -145,7 +132,7 @@ class KEYMARK_OT_camera_from_lines(ClickSequence, BaseOperator, bpy.types.Operat
         elif action in ("MOVE", "RELEASE"):
             drawing.move(pixel)
         if action == "RELEASE":
-            drawing.release(lambda one, other: apart(one, other) * NEAR_PX / CLICKED_PX)
+            drawing.release(lambda one, other: apart(one, other) * NEAR_PX / found_camera.CLICKED_PX)
         self.ask(context)
         return {"RUNNING_MODAL"}
 
@@ -165,45 +152,49 @@ class KEYMARK_OT_camera_from_lines(ClickSequence, BaseOperator, bpy.types.Operat
     def done(self, context: Context) -> set[str]:
         """Keep the lines and set the camera; if they say nothing of it, everything is as before."""
         take, lines = active_take(context.scene), self._drawing.complete
-        before = read_lines(take), take.stature
+        before = found_camera.read_lines(take), take.stature
         stature, found = self._drawing.stature_m, lines or self._drawing.fit is not None
         self.cancel(context)
         if not found and not before[0]:
             return {"CANCELLED"}
-        store_lines(take, lines)
+        found_camera.store_lines(take, lines)
         take.stature = stature
         done = self.execute(context) if found else {"FINISHED"}
         if "CANCELLED" in done:
-            store_lines(take, before[0])
+            found_camera.store_lines(take, before[0])
             take.stature = before[1]
         return done
 
     def cancel(self, context: Context) -> None:
-        show(None)
+        found_camera.show(None)
         super().cancel(context)
         redraw_sidebars_soon()
 
     def run(self, context: Context) -> None:
         take = active_take(context.scene)
-        fit = self._fit(take, read_lines(take), take.stature)
+        fit = self._fit(take, found_camera.read_lines(take), take.stature)
         if fit is None:
             raise InputError(f"take '{take.name}' has no lines to find its camera by; draw some")
-        write_fit(take, fit)
-        self.report({"INFO"}, f"{values(fit)}")
+        found_camera.write_fit(take, fit)
+        self.report({"INFO"}, f"{found_camera.values(fit)}")
 
     def _fit(self, take: PropertyGroup, lines: list[DrawnLine], stature_m: float) -> "CameraFit | None":
         """The camera by lines, and by keypoints where the performer tells it; None without any."""
-        evidence = evidence_of(lines, stature_m)
+        from ...core.camera.camera_fit import fit_camera
+
+        evidence = found_camera.evidence_of(lines, stature_m)
         if self.kind == HEIGHT:
             if self._upright is None or self._upright[0] != stature_m:
                 self._upright = stature_m, standing_performer(take, stature_m)
             evidence = replace(evidence, uprights=evidence.uprights + self._upright[1])
-        return fit_take(take, evidence) if lines or len(evidence.uprights) else None
+        if not lines and not len(evidence.uprights):
+            return None
+        seen = still_camera_of(footage_of(take.id_data, take))
+        return fit_camera(seen, evidence, lens_is_known=not lens_is_guess(take))
 
     def _view(self, context: Context) -> FootageView | None:
-        """The view of the footage under the mouse, which may lie beside the picture."""
         x, y = self._mouse
-        return view_of_footage_under(context, active_take(context.scene), int(x), int(y))
+        return footage_view.view_of_footage_under(context, active_take(context.scene), int(x), int(y))
 
     def _distance_of_line(self, context: Context) -> Callable[[DrawnLine], float]:
         """Tells the distance from the mouse to a line in the region, as a share of how near is near."""

@@ -74,11 +74,7 @@ def recent_state(path: Path) -> str | None:
 
 
 def keypoint_path(entry: PropertyGroup) -> Path:
-    """The path of a file of keypoints, which may be missing.
-
-    Blender keeps relative paths of its own in step when a .blend is saved elsewhere, those of extensions not:
-    so the one from the root is used where nothing, or another file, lies at the relative one.
-    """
+    """The path of a file of keypoints: from the root where the relative one is not of that file."""
     relative, absolute = Path(bpy.path.abspath(entry.filepath)), Path(entry.absolute_path)
     if not entry.absolute_path or relative == absolute:
         return relative
@@ -89,10 +85,7 @@ def keypoint_path(entry: PropertyGroup) -> Path:
 
 
 def add_keypoint_file(take: PropertyGroup, path: Path, replace: bool = False) -> None:
-    """Add a file of keypoints to a take, switched on and chosen; one that it has is not added twice.
-
-    With `replace` it takes the place of the chosen one.
-    """
+    """Add a file of keypoints to a take, once, or in the chosen one's place; it is switched on and chosen."""
     from ..bridge.result_files import stored_path
 
     follow = take.follow
@@ -164,11 +157,7 @@ class FrameKeypoints:
 
 
 def keypoints_at(take: PropertyGroup, scene_frame: int) -> tuple[FrameKeypoints, ...]:
-    """What each source of a take that is switched on sees in a scene frame, in every frame the same sources.
-
-    Clicks and tracks are listed without any point where they have none; a file that cannot be read is left
-    out, as the panel says.
-    """
+    """What each source of a take that is on sees in a scene frame, always the same sources, readable ones."""
     follow = take.follow
     if take.clip is None or take.clip_state.missing or not all(take.clip.size):
         return ()
@@ -208,7 +197,6 @@ def people_at(people: People, index: int) -> FrameKeypoints:
 def _one_person(
     source: str, seen: list[tuple[str, tuple[float, float], float]], is_tracked: bool = False
 ) -> FrameKeypoints:
-    """The points of the performer: name, place [px] and score of each."""
     pixel = np.array([place for _, place, _ in seen], dtype=np.float64).reshape(1, len(seen), 2)
     score = np.array([value for _, _, value in seen], dtype=np.float64).reshape(1, len(seen))
     return FrameKeypoints(source, tuple(point for point, _, _ in seen), pixel, score, is_tracked)

@@ -6,24 +6,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import bpy
-from bpy.types import AddonPreferences, Context, Event, PropertyGroup, Scene, UILayout
+from bpy.types import AddonPreferences, Context, Event, Operator, PropertyGroup, Scene, UILayout
 
 from ...core.detect.detector_formats import is_one_frame
+from ...core.detect.keypoints import People
 from ...core.errors import InputError
 from ...core.files.json_file import read_json_value
 from ...core.progress import Job, run
 from ..bridge.scene_evidence import read_keypoint_file
-from ..shell.base_operator import (
-    BaseOperator,
-    browse,
-    chosen_path,
-    footage,
-    idle,
-    keypoint_files,
-    remove_active,
-    warn,
-)
-from ..shell.fields import HIDDEN, SKIP_SAVE, Switch, Text
+from ..shell import need
+from ..shell.base_operator import BaseOperator, browse, chosen_path, operator, remove_active, warn
+from ..shell.fields import HIDDEN, SKIP_SAVE, File, Switch, Text
 from ..shell.job_operator import JobOperator
 from ..shell.results import EXTENSION, reading_of
 from ..shell.takes import active_take, footage_of, redraw_footage, take_by_identifier
@@ -31,7 +24,6 @@ from .evidence import add_keypoint_file, clear_readings, keypoint_path, scene_ev
 
 if TYPE_CHECKING:
     from ...core.detect.families.network import Network
-    from ...core.detect.keypoints import People
 
 
 class KEYMARK_AP_preferences(bpy.types.AddonPreferences):
@@ -81,14 +73,11 @@ class KEYMARK_OT_load_keypoints(BaseOperator, bpy.types.Operator):
     """Load points of the body that a detector has found in this clip: a file, or a folder with one a frame"""
 
     bl_label = "Load Keypoints"
-    requirements = (footage, idle)
+    requirements = (need.footage, need.idle)
 
-    filepath: Text(
-        "File Path",
+    filepath: File(
         "Keypoints of this clip: Keymark's own file or a detector's; where that writes a file a "
-        "frame, the folder or any file in it",
-        subtype="FILE_PATH",
-        options=SKIP_SAVE,
+        "frame, the folder or any file in it"
     )
     replace: Switch(
         "Replace",
@@ -137,15 +126,11 @@ def follow_file(take: PropertyGroup, path: Path, replace: bool = False) -> None:
     redraw_footage(bpy.context)
 
 
-class KEYMARK_OT_remove_keypoints(BaseOperator, bpy.types.Operator):
+@operator("Remove Keypoints", need.keypoint_files, need.idle)
+def remove_keypoints(operator: Operator, context: Context, take: PropertyGroup) -> None:
     """Remove the chosen keypoints from the take; their file stays on disk"""
-
-    bl_label = "Remove Keypoints"
-    requirements = (keypoint_files, idle)
-
-    def run(self, context: Context) -> None:
-        remove_active(active_take(context.scene).follow, "files", "active_file")
-        redraw_footage(context)
+    remove_active(active_take(context.scene).follow, "files", "active_file")
+    redraw_footage(context)
 
 
 KEYPOINT_FILE = "keypoints.json"
@@ -157,7 +142,7 @@ class Detected:
 
     take: str  # The take's identifier
     output: Path  # The file to write
-    people: "People"
+    people: People
     fps: float
     frame_start: int
 
@@ -178,7 +163,7 @@ class KEYMARK_OT_detect_keypoints(JobOperator, bpy.types.Operator):
     """Find points of the body of everybody in the whole clip"""
 
     bl_label = "Detect Keypoints"
-    requirements = (footage, idle)
+    requirements = (need.footage, need.idle)
 
     def start(self, scene: Scene) -> Job[Detected]:
         """Find everybody in the active take's clip."""

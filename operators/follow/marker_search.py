@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import bpy
-from bpy.types import Context, PropertyGroup, Scene
+from bpy.types import Context, Operator, PropertyGroup, Scene
 
 from ...core.errors import InputError, pluralize
 from ...core.markers.ignored_regions import IgnoredRegion
@@ -13,30 +13,12 @@ from ...core.markers.region_tracks import MarkerStyle
 from ...core.progress import Job, within
 from ..bridge.footage import Footage
 from ..footage.load_footage import update_clip_digest
-from ..shell.base_operator import (
-    BaseOperator,
-    Unchanged,
-    call,
-    capitalized,
-    footage,
-    idle,
-    markers,
-    of_take,
-    picked_color,
-    remove_active,
-    warn,
-)
+from ..shell import need, takes
+from ..shell.base_operator import BaseOperator, Unchanged, call, capitalized, operator, remove_active, warn
 from ..shell.footage_view import clip_index
 from ..shell.job_operator import JobOperator
 from ..shell.results import reading_of
-from ..shell.takes import (
-    active_take,
-    ensure_take,
-    footage_of,
-    redraw_footage,
-    take_by_identifier,
-    unique_name,
-)
+from ..shell.takes import active_take, ensure_take, footage_of, redraw_footage, take_by_identifier
 from .mask_previews import keep_preview, preview_of, show_masks, update_masks
 from .properties import SEGMENTS, add_ignored_regions, clear_readouts, ignored_regions
 
@@ -52,7 +34,7 @@ USUAL_SEGMENTS = ("trunk", "forearm.L", "forearm.R", "shin.L", "shin.R")
 
 def append_marker(take: PropertyGroup, segment: str) -> None:
     """Add a marker with a unique name after its segment, and make it the active one."""
-    name = unique_name(segment, [marker.name for marker in take.markers])
+    name = takes.unique_name(segment, [marker.name for marker in take.markers])
     marker = take.markers.add()
     marker.segment, marker.name = segment, name
     marker.named_after = segment
@@ -83,10 +65,7 @@ def marker_styles(take: PropertyGroup) -> tuple[MarkerStyle, ...]:
 
 
 def styles_with_colors(take: PropertyGroup, colors: Mapping[str, Rgb]) -> tuple[MarkerStyle, ...]:
-    """The styles of a take's markers that have a color, once some are given new ones by their names.
-
-    A take without markers counts as one with the usual five.
-    """
+    """The styles of markers with a color, once some get new ones by name; of the usual five if none."""
     styles, picked = marker_styles(take), {marker.name for marker in take.markers if marker.is_picked}
     if not styles:
         styles = tuple(MarkerStyle(segment, segment, (0, 0, 0)) for segment in USUAL_SEGMENTS)
@@ -143,7 +122,6 @@ def find_markers(
 
 
 def _write_readouts(take: PropertyGroup, check: "MarkerCheck") -> None:
-    """Store a check with the markers."""
     update_clip_digest(take)
     readouts = {readout.name: readout for readout in check.readouts}
     for marker in take.markers:
@@ -217,7 +195,7 @@ class KEYMARK_OT_check_markers(JobOperator, bpy.types.Operator):
     """Look for the markers in frames all over the clip: how large, distinct and reliably found each one is"""
 
     bl_label = "Check Markers"
-    requirements = (footage, markers, picked_color, idle)
+    requirements = (need.footage, need.markers, need.picked_color, need.idle)
 
     def start(self, scene: Scene) -> Job[MarkerSearch]:
         return search_markers(scene)
@@ -233,7 +211,7 @@ def still_boxes(take: PropertyGroup) -> tuple[Any, ...]:
     return tuple(dict.fromkeys(tuple(area.box) for marker in found for area in marker.still_areas))
 
 
-still_areas = of_take(
+still_areas = need.of_take(
     lambda state: still_boxes(state.take),
     "Check the markers first; no still area of a marker's color is known",
 )
@@ -243,7 +221,7 @@ class KEYMARK_OT_ignore_still_areas(JobOperator, bpy.types.Operator):
     """Leave out what keeps a marker's color in the same pixels while the marker moves: it is surely none"""
 
     bl_label = "Ignore Still Areas"
-    requirements = (footage, markers, still_areas, idle)
+    requirements = (need.footage, need.markers, still_areas, need.idle)
 
     def start(self, scene: Scene) -> Job[MarkerSearch]:
         boxes = still_boxes(active_take(scene))
@@ -254,59 +232,45 @@ class KEYMARK_OT_ignore_still_areas(JobOperator, bpy.types.Operator):
         self.report({"INFO"}, f"Still areas are never a marker: {len(result.more)} more")
 
 
-class KEYMARK_OT_add_marker(BaseOperator, bpy.types.Operator):
+@operator("Add Marker")
+def add_marker(operator: Operator, context: Context, take: PropertyGroup) -> None:
     """Add a marker on the next body part that usually wears one"""
-
-    bl_label = "Add Marker"
-
-    def run(self, context: Context) -> None:
-        take = ensure_take(context.scene)
-        marked = {marker.segment for marker in take.markers}
-        free = [segment for segment in (*USUAL_SEGMENTS, *SEGMENTS) if segment not in marked]
-        if not free:
-            raise InputError("every body part has a marker already")
-        append_marker(take, free[0])
+    take = ensure_take(context.scene)
+    marked = {marker.segment for marker in take.markers}
+    free = [segment for segment in (*USUAL_SEGMENTS, *SEGMENTS) if segment not in marked]
+    if not free:
+        raise InputError("every body part has a marker already")
+    append_marker(take, free[0])
 
 
-class KEYMARK_OT_add_usual_markers(BaseOperator, bpy.types.Operator):
+@operator("Add Usual Five")
+def add_usual_markers(operator: Operator, context: Context, take: PropertyGroup) -> None:
     """Add the five markers that help most: trunk, both forearms and both shins"""
-
-    bl_label = "Add Usual Five"
-
-    def run(self, context: Context) -> None:
-        take = ensure_take(context.scene)
-        if {marker.segment for marker in take.markers}.issuperset(USUAL_SEGMENTS):
-            raise Unchanged("trunk, forearms and shins have markers already")
-        append_usual_markers(take)
+    take = ensure_take(context.scene)
+    if {marker.segment for marker in take.markers}.issuperset(USUAL_SEGMENTS):
+        raise Unchanged("trunk, forearms and shins have markers already")
+    append_usual_markers(take)
 
 
-class KEYMARK_OT_remove_marker(BaseOperator, bpy.types.Operator):
+@operator("Remove Marker", need.markers)
+def remove_marker(operator: Operator, context: Context, take: PropertyGroup) -> None:
     """Remove the active marker"""
-
-    bl_label = "Remove Marker"
-    requirements = (markers,)
-
-    def run(self, context: Context) -> None:
-        take = active_take(context.scene)
-        if take.markers[min(take.active_marker, len(take.markers) - 1)].is_picked:
-            clear_readouts(take)
-        remove_active(take, "markers", "active_marker")
-
-
-some_ignored = of_take(lambda state: len(state.take.ignored_regions), "No region of the picture is left out")
-
-
-class KEYMARK_OT_remove_ignored_region(BaseOperator, bpy.types.Operator):
-    """Search the chosen region of the picture for markers again"""
-
-    bl_label = "Remove Region"
-    requirements = (some_ignored, idle)
-
-    def run(self, context: Context) -> None:
-        take = active_take(context.scene)
-        remove_active(take, "ignored_regions", "active_ignored")
+    if take.markers[min(take.active_marker, len(take.markers) - 1)].is_picked:
         clear_readouts(take)
-        redraw_footage(context)
+    remove_active(take, "markers", "active_marker")
+
+
+some_ignored = need.of_take(
+    lambda state: len(state.take.ignored_regions), "No region of the picture is left out"
+)
+
+
+@operator("Remove Region", some_ignored, need.idle)
+def remove_ignored_region(operator: Operator, context: Context, take: PropertyGroup) -> None:
+    """Search the chosen region of the picture for markers again"""
+    remove_active(take, "ignored_regions", "active_ignored")
+    clear_readouts(take)
+    redraw_footage(context)
 
 
 class KEYMARK_OT_show_masks(BaseOperator, bpy.types.Operator):
@@ -314,7 +278,7 @@ class KEYMARK_OT_show_masks(BaseOperator, bpy.types.Operator):
 
     bl_label = "Show Masks"
     bl_options = {"REGISTER"}
-    requirements = (footage, markers, picked_color, idle)
+    requirements = (need.footage, need.markers, need.picked_color, need.idle)
 
     def run(self, context: Context) -> None:
         manager = context.window_manager

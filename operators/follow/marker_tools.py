@@ -13,20 +13,15 @@ from ...core.errors import InputError
 from ...core.markers import ignored_regions as regions_of_picture
 from ...core.markers.ignored_regions import IgnoredRegion
 from ...core.progress import Job
-from ..shell.base_operator import footage, idle, markers, reported, warn
-from ..shell.fields import SKIP_SAVE, Entries, Integer, Number, Vector
+from ..bridge.footage import footage_color
+from ..shell import need
+from ..shell.base_operator import reported, warn
+from ..shell.fields import SKIP_SAVE, Entries, Integer, Number, Pixel
 from ..shell.footage_view import ClickSequence, FootageRequest, pixel_under, side_of, stop_asking
 from ..shell.job_operator import SHORTEST_SLICE_S, TIMER_S, JobOperator
 from ..shell.takes import active_take, footage_of, redraw_footage, take_by_identifier
-from .marker_search import (
-    USUAL_SEGMENTS,
-    MarkerSearch,
-    find_markers,
-    search_markers,
-    styles_with_colors,
-    write_and_warn,
-    write_search,
-)
+from . import marker_search
+from .marker_search import MarkerSearch, search_markers, write_and_warn
 from .mask_previews import PICKED, learned_preview, preview_of, show_masks, update_masks
 from .properties import ignored_regions, segment_title
 
@@ -66,7 +61,7 @@ class KEYMARK_OT_pick_markers(MarkerTool, bpy.types.Operator):
     """Click on one marker after the other in the footage; without a list they are the usual five"""
 
     bl_label = "Pick Markers"
-    requirements = (footage, idle)
+    requirements = (need.footage, need.idle)
     cursor = "EYEDROPPER"
 
     clicks: Entries(
@@ -89,7 +84,7 @@ class KEYMARK_OT_pick_markers(MarkerTool, bpy.types.Operator):
         """Ask for the markers without a color, for all where each has one, or for the usual five."""
         super().prepare(context, take)
         markers = [marker for marker in take.markers if not marker.is_picked] or list(take.markers)
-        usual = [(segment, segment) for segment in USUAL_SEGMENTS]
+        usual = [(segment, segment) for segment in marker_search.USUAL_SEGMENTS]
         self._wanted = [(marker.name, marker.segment) for marker in markers] or usual
         self._here, self._colors = 0, {}
         self._timer = context.window_manager.event_timer_add(TIMER_S, window=context.window)
@@ -115,8 +110,6 @@ class KEYMARK_OT_pick_markers(MarkerTool, bpy.types.Operator):
         return FootageRequest(f"Click on: {segment_title(segment)}", side_of(segment)), keys
 
     def clicked(self, context: Context, pixel: tuple[float, float]) -> set[str]:
-        from ..bridge.footage import footage_color
-
         name = self._wanted[self._here][0]
         with reported(self):
             color = footage_color(footage_of(context.scene, active_take(context.scene)), pixel)
@@ -162,8 +155,6 @@ class KEYMARK_OT_pick_markers(MarkerTool, bpy.types.Operator):
         super().cancel(context)
 
     def start(self, scene: Scene) -> Job[MarkerSearch]:
-        from ..bridge.footage import footage_color
-
         source, colors = footage_of(scene, active_take(scene)), self._colors
         if colors is None:
             colors = {one.name: footage_color(source, one.loc, round(one.time)) for one in self.clicks}
@@ -178,8 +169,8 @@ class KEYMARK_OT_pick_markers(MarkerTool, bpy.types.Operator):
     def _begin_to_look(self, context: Context) -> None:
         self._stop_looking()
         take = active_take(context.scene)
-        styles = styles_with_colors(take, self._colors)
-        search = find_markers(footage_of(context.scene, take), styles, ignored_regions(take))
+        styles = marker_search.styles_with_colors(take, self._colors)
+        search = marker_search.find_markers(footage_of(context.scene, take), styles, ignored_regions(take))
 
         identifier = take.identifier
 
@@ -198,16 +189,12 @@ class KEYMARK_OT_pick_marker_color(MarkerTool, bpy.types.Operator):
     """Click on this one marker in the footage, to take its color from there and look for it in the clip"""
 
     bl_label = "Pick Marker Color"
-    requirements = (footage, markers, idle)
+    requirements = (need.footage, need.markers, need.idle)
     cursor = "EYEDROPPER"
     ends_beside = False
 
-    pixel: Vector(
-        "Pixel", "Where to pick, in pixels of the footage from its top left corner", size=2, options=SKIP_SAVE
-    )
-    row: Integer(
-        "Row", "Row of the marker in the list, from 0; -1 for the active one", default=-1, options=SKIP_SAVE
-    )
+    pixel: Pixel("Pixel", "Where to pick")
+    row: Integer("Row", "Row of the marker, from 0; -1 for the active one", default=-1, options=SKIP_SAVE)
 
     def prepare(self, context: Context, take: PropertyGroup) -> None:
         super().prepare(context, take)
@@ -223,14 +210,12 @@ class KEYMARK_OT_pick_marker_color(MarkerTool, bpy.types.Operator):
 
     def start(self, scene: Scene) -> Job[MarkerSearch]:
         """The color is read from the clip's file: the viewport's has gone through color management."""
-        from ..bridge.footage import footage_color
-
         take = active_take(scene)
         name, color = self._marker(take).name, footage_color(footage_of(scene, take), self.pixel)
         return (yield from search_markers(scene, {name: color}))
 
     def finish(self, scene: Scene, result: MarkerSearch) -> None:
-        write_search(scene, result, masks=self.masks_before is not None)
+        marker_search.write_search(scene, result, masks=self.masks_before is not None)
         ((name, color),) = result.colors.items()
         marker = next(each for each in take_by_identifier(scene, result.take).markers if each.name == name)
         for sentence in marker.warning.splitlines():
@@ -243,7 +228,7 @@ class KEYMARK_OT_pick_marker_color(MarkerTool, bpy.types.Operator):
         return take.markers[min(row, len(take.markers) - 1)]
 
 
-Pixel = tuple[float, float]
+Place = tuple[float, float]
 
 
 @dataclass
@@ -253,18 +238,18 @@ class Brush:
     at_work: "ClassVar[Brush | None]" = None
     width: int  # Width of the footage in px
     radius_px: float = 0.0  # Its radius in pixels of the footage; 0 for the usual one
-    strokes: list[tuple[float, list[Pixel]]] = field(default_factory=list)
+    strokes: list[tuple[float, list[Place]]] = field(default_factory=list)
     """Radius and points of each stroke."""
     is_down: bool = False
 
     def __post_init__(self) -> None:
         self.radius_px = self.radius_px or max(0.03 * self.width, 1.0)
 
-    def press(self, pixel: Pixel) -> None:
+    def press(self, pixel: Place) -> None:
         self.strokes.append((self.radius_px, [pixel]))
         self.is_down = True
 
-    def move(self, pixel: Pixel) -> None:
+    def move(self, pixel: Place) -> None:
         """Go on with the stroke; a long one goes on as another."""
         radius, points = self.strokes[-1]
         if np.hypot(pixel[0] - points[-1][0], pixel[1] - points[-1][1]) < 0.25 * radius:
@@ -289,7 +274,7 @@ class KEYMARK_OT_ignore_region(MarkerTool, bpy.types.Operator):
     """Brush over what has a marker's color and is none, as a wall or a chair; it is never taken for one"""
 
     bl_label = "Not This"
-    requirements = (footage, markers, idle)
+    requirements = (need.footage, need.markers, need.idle)
     cursor = "PAINT_CROSS"
     ends_beside = False
 
@@ -299,9 +284,7 @@ class KEYMARK_OT_ignore_region(MarkerTool, bpy.types.Operator):
         type=bpy.types.OperatorMousePath,
         options=SKIP_SAVE,
     )
-    radius: Number(
-        "Radius", "The brush's radius in pixels of the footage", default=10.0, min=0.5, options=SKIP_SAVE
-    )
+    radius: Number("Radius", "Radius of the brush in the footage", default=10.0, min=0.5, options=SKIP_SAVE)
 
     _brushed: Any = None
     """The regions that were brushed; None in a script. Blender would evaluate a type named here."""
@@ -338,7 +321,7 @@ class KEYMARK_OT_ignore_region(MarkerTool, bpy.types.Operator):
         detail = "as a wall or a chair of a marker's color"
         return FootageRequest("Brush over what is no marker", detail, radius), BRUSH_KEYS
 
-    def clicked(self, context: Context, pixel: Pixel) -> set[str]:
+    def clicked(self, context: Context, pixel: Place) -> set[str]:
         brush = Brush.at_work
         if brush is not None:
             brush.press(pixel)

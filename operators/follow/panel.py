@@ -8,30 +8,13 @@ from bpy.types import AnyType, Context, PropertyGroup, UILayout
 
 from ...core.errors import pluralize
 from ..bridge.footage_camera import may_move
+from ..shell import panel
 from ..shell.base_operator import capitalized
 from ..shell.footage_view import clip_index
-from ..shell.panel import (
-    KINDS,
-    RowList,
-    draw_progress,
-    draw_readout,
-    draw_sentence,
-    is_roomy,
-    property_column,
-    right_end,
-    side_by_side,
-)
+from ..shell.panel import KINDS, RowList, draw_progress, draw_sentence, is_roomy, right_end
 from ..shell.takes import active_take, assigned_tracks, find_take, point_of
-from .evidence import (
-    clicked_here,
-    clip_frame,
-    contours_label,
-    keypoint_path,
-    keypoint_reading,
-    keypoints_label,
-    people_at,
-    tracks_label,
-)
+from . import evidence
+from .evidence import keypoint_path, keypoint_reading, people_at
 from .marker_search import markers_label, still_boxes
 from .properties import segment_title
 
@@ -76,14 +59,12 @@ class KEYMARK_UL_ignored_regions(RowList, bpy.types.UIList):
 def _draw_list(
     layout: UILayout, kind: str, owner: PropertyGroup, entries: str, active: str, rows: int = ROWS
 ) -> UILayout:
-    """Draw a list; returns the column of buttons beside it."""
     row = layout.row()
     row.template_list(kind, "", owner, entries, owner, active, rows=rows)
     return row.column(align=True)
 
 
 def _draw_markers(layout: UILayout, context: Context, take: PropertyGroup) -> None:
-    """Draw the list, the active marker, and the operators of both."""
     picked = all(marker.is_picked for marker in take.markers)
     pick = layout.row()
     pick.scale_y = 1.3
@@ -99,7 +80,7 @@ def _draw_markers(layout: UILayout, context: Context, take: PropertyGroup) -> No
     buttons.operator("keymark.remove_marker", text="", icon="REMOVE")
     if take.active_marker < len(take.markers):
         marker = take.markers[take.active_marker]
-        property_column(layout.column()).prop(marker, "segment")
+        panel.property_column(layout.column()).prop(marker, "segment")
         readout = layout.column(align=True)
         rows = {
             "Found In": f"{marker.found} of {marker.sampled} frames",
@@ -113,7 +94,7 @@ def _draw_markers(layout: UILayout, context: Context, take: PropertyGroup) -> No
         for sentence in marker.warning.splitlines() if marker.has_readout(take) else ():
             draw_sentence(layout, context, sentence, icon="ERROR")
     _draw_ignored(layout, context, take)
-    row = side_by_side(layout)
+    row = panel.side_by_side(layout)
     if not draw_progress(row, context, "keymark.check_markers"):
         row.operator("keymark.check_markers", icon="VIEWZOOM")
     shown = context.window_manager.keymark_show_masks
@@ -121,7 +102,6 @@ def _draw_markers(layout: UILayout, context: Context, take: PropertyGroup) -> No
 
 
 def _draw_ignored(layout: UILayout, context: Context, take: PropertyGroup) -> None:
-    """Draw what is never a marker: the brush, the list of regions, and the frames of the chosen one."""
     if not draw_progress(layout, context, "keymark.ignore_region", "keymark.ignore_still_areas"):
         row = layout.row(align=True)
         row.operator("keymark.ignore_region", icon="BRUSH_DATA")
@@ -132,7 +112,7 @@ def _draw_ignored(layout: UILayout, context: Context, take: PropertyGroup) -> No
     buttons = _draw_list(layout, "KEYMARK_UL_ignored_regions", take, "ignored_regions", "active_ignored")
     buttons.operator("keymark.remove_ignored_region", text="", icon="REMOVE")
     if take.active_ignored < len(take.ignored_regions):
-        region, column = take.ignored_regions[take.active_ignored], property_column(layout.column())
+        region, column = take.ignored_regions[take.active_ignored], panel.property_column(layout.column())
         column.prop(region, "some_frames")
         if region.some_frames:
             frames = column.column(align=True)
@@ -163,7 +143,7 @@ class KEYMARK_UL_clicked_points(RowList, bpy.types.UIList):
     use_filter_show = False
 
     def filter_items(self, context: Context, data: AnyType, name: str) -> tuple[list[int], list[int]]:
-        here = clip_frame(active_take(context.scene))
+        here = evidence.clip_frame(active_take(context.scene))
         return [self.bitflag_filter_item if each.frame == here else 0 for each in getattr(data, name)], []
 
     def draw_row(self, context: Context, layout: UILayout, item: PropertyGroup) -> None:
@@ -173,7 +153,6 @@ class KEYMARK_UL_clicked_points(RowList, bpy.types.UIList):
 
 
 def _draw_keypoints(layout: UILayout, context: Context, take: PropertyGroup) -> None:
-    """Draw files of detectors, and points that are clicked on."""
     follow = take.follow
     if not draw_progress(layout, context, "keymark.detect_keypoints"):
         layout.operator("keymark.detect_keypoints", icon="VIEWZOOM")
@@ -190,7 +169,7 @@ def _draw_keypoints(layout: UILayout, context: Context, take: PropertyGroup) -> 
     column.operator("keymark.click_point", icon="RESTRICT_SELECT_OFF")
     if len(follow.clicks):
         row = column.row(align=True)
-        text = f"{len(clicked_here(take))} here, {len(follow.clicks)} in all"
+        text = f"{len(evidence.clicked_here(take))} here, {len(follow.clicks)} in all"
         row.label(text=text, translate=False, icon="CHECKMARK")
         row.operator("keymark.remove_clicks", text="", icon="TRASH")
         source = (follow, "clicks", follow, "active_click")
@@ -198,7 +177,6 @@ def _draw_keypoints(layout: UILayout, context: Context, take: PropertyGroup) -> 
 
 
 def _draw_file(layout: UILayout, context: Context, take: PropertyGroup, entry: PropertyGroup) -> None:
-    """Draw what the chosen file sees in this frame, or what is wrong with it."""
     reading, path = keypoint_reading(take, entry), keypoint_path(entry)
     people = reading.people
     if people is None:
@@ -245,7 +223,6 @@ class KEYMARK_UL_tracks(bpy.types.UIList):
 
 
 def _draw_tracks(layout: UILayout, context: Context, take: PropertyGroup) -> None:
-    """Draw the motion tracks of each tracking object that has any, and what they follow."""
     objects = [each for each in take.clip.tracking.objects if len(each.tracks)] if take.clip else []
     if not objects:
         hint = "Track elbows, wrists, knees or ankles in the Movie Clip editor, and name the tracks"
@@ -262,7 +239,6 @@ def _draw_tracks(layout: UILayout, context: Context, take: PropertyGroup) -> Non
 
 
 def _draw_contours(layout: UILayout, context: Context, take: PropertyGroup) -> None:
-    """Draw whether the outline of the body can be followed, and why."""
     if take.camera is None:
         sentence = "Contours need the camera of the footage"
     elif may_move(take.camera):
@@ -274,9 +250,9 @@ def _draw_contours(layout: UILayout, context: Context, take: PropertyGroup) -> N
 
 DRAWN = {
     "markers": (markers_label, _draw_markers),
-    "keypoints": (keypoints_label, _draw_keypoints),
-    "tracks": (tracks_label, _draw_tracks),
-    "contours": (contours_label, _draw_contours),
+    "keypoints": (evidence.keypoints_label, _draw_keypoints),
+    "tracks": (evidence.tracks_label, _draw_tracks),
+    "contours": (evidence.contours_label, _draw_contours),
 }
 """What each kind sees in this frame, and its settings."""
 
@@ -291,7 +267,11 @@ def draw_evidence(layout: UILayout, context: Context, take: PropertyGroup) -> No
         readout, draw_settings = DRAWN[kind]
         header, body = layout.panel_prop(context.window_manager.keymark_steps, kind)
         header.prop(take.follow, f"use_{kind}", text=kind.title())
-        draw_readout(header, readout(take))
+        words = readout(take)
+        if is_roomy(context) or len(words) <= 7:  # else it would lie on the name
+            right = right_end(header)
+            right.active = False
+            right.label(text=words, translate=False)
         if body is not None:
             body.active = getattr(take.follow, f"use_{kind}")
             draw_settings(body, context, take)

@@ -12,8 +12,9 @@ from ...core.detect.keypoints import BODY_POINTS
 from ...core.detect.layouts import named_point
 from ...core.errors import InputError
 from ..bridge.scene_evidence import clip_tracks
-from ..shell.base_operator import BaseOperator, Unchanged, footage, idle, keypoint_files
-from ..shell.fields import SKIP_SAVE, Choice, Text, Vector
+from ..shell import need
+from ..shell.base_operator import BaseOperator, Unchanged
+from ..shell.fields import SKIP_SAVE, Choice, Pixel, Text
 from ..shell.footage_view import ClickSequence, FootageRequest, side_of
 from ..shell.takes import active_take, redraw_footage, redraw_sidebars_soon
 from .evidence import clicked_here, clicked_points, clip_frame, keypoints_at
@@ -43,16 +44,10 @@ class KEYMARK_OT_click_point(ClickSequence, BaseOperator, bpy.types.Operator):
     """Click on points of the body in this frame, one after another; the arrow keys go to other frames"""
 
     bl_label = "Click Points"
-    requirements = (footage, idle)
+    requirements = (need.footage, need.idle)
 
-    point: Choice(
-        "Body Point",
-        "The point of the body; left and right are the performer's own",
-        items=body_point_items(),
-    )
-    pixel: Vector(
-        "Pixel", "Where it is, in pixels of the footage from its top left corner", size=2, options=SKIP_SAVE
-    )
+    point: Choice("Body Point", "The point; left and right are the performer's own", items=body_point_items())
+    pixel: Pixel("Pixel", "Where it is")
 
     _before: Any = None
     """The chosen point and the clicks when the operator began; Blender would evaluate a type named here."""
@@ -119,7 +114,7 @@ class KEYMARK_OT_remove_clicks(BaseOperator, bpy.types.Operator):
     """Remove this point in this frame, or all points that were clicked on in this frame"""
 
     bl_label = "Remove Clicked Points"
-    requirements = (footage, idle)
+    requirements = (need.footage, need.idle)
 
     point: Text("Body Point", "The point to remove; empty for all", options=SKIP_SAVE)
 
@@ -136,14 +131,9 @@ class KEYMARK_OT_click_performer(ClickSequence, BaseOperator, bpy.types.Operator
     """Click on the performer in a frame in which a detector sees several people; one frame is often enough"""
 
     bl_label = "Click on the Performer"
-    requirements = (footage, keypoint_files, idle)
+    requirements = (need.footage, need.keypoint_files, need.idle)
 
-    pixel: Vector(
-        "Pixel",
-        "Where the performer is, in pixels of the footage from its top left corner",
-        size=2,
-        options=SKIP_SAVE,
-    )
+    pixel: Pixel("Pixel", "Where the performer is")
 
     def request(self, context: Context) -> tuple[FootageRequest, str]:
         return FootageRequest("Click on the performer"), "Esc: Cancel"
@@ -177,7 +167,7 @@ class KEYMARK_OT_assign_track(BaseOperator, bpy.types.Operator):
     """Choose the body point that this motion track follows; tracks that are named after one need no choice"""
 
     bl_label = "Assign Track"
-    requirements = (footage, idle)
+    requirements = (need.footage, need.idle)
 
     owner: Text("Object", "Name of the tracking object that the track belongs to")
     track: Text("Track", "Name of the motion track")

@@ -1,6 +1,7 @@
 """Properties of what a take follows: markers, what is never one, keypoints, tracks and clicked points."""
 
 from collections.abc import Iterable
+from functools import partial
 from typing import Any
 
 import bpy
@@ -60,9 +61,7 @@ class KEYMARK_PG_ignored_region(bpy.types.PropertyGroup):
     """A region of the picture that is never a marker."""
 
     name: Text("Name", "Your name for this region")
-    box: Vector(
-        "Box", "Left, top, right and bottom of a box in pixels of the footage; unused by a stroke", size=4
-    )
+    box: Vector("Box", "Left, top, right, bottom of a box in pixels of the footage; not of a stroke", size=4)
     stroke: Entries(type=KEYMARK_PG_stroke_point)
     radius: Number("Radius", "The brush's radius in pixels of the footage", min=0.0)
     some_frames: Switch(
@@ -73,9 +72,7 @@ class KEYMARK_PG_ignored_region(bpy.types.PropertyGroup):
     )
     first: Integer("First", "Its first frame, counted from the clip's first", options=HIDDEN)
     last: Integer("Last", "Its last frame, counted from the clip's first", options=HIDDEN)
-    first_frame: _scene_frame(
-        "First Frame", "First frame of the scene in which the region is left out", "first"
-    )
+    first_frame: _scene_frame("First Frame", "First scene frame in which the region is left out", "first")
     last_frame: _scene_frame("Last Frame", "Last frame of the scene in which the region is left out", "last")
 
 
@@ -89,10 +86,7 @@ def ignored_regions(take: PropertyGroup) -> tuple[IgnoredRegion, ...]:
     regions = []
     for region in take.ignored_regions:
         frames = (int(region.first), int(region.last)) if region.some_frames else None
-        stroke, (radius_px,) = (
-            tuple(rounded(point.pixel) for point in region.stroke),
-            rounded([region.radius]),
-        )
+        stroke, (radius_px,) = tuple(rounded(each.pixel) for each in region.stroke), rounded([region.radius])
         brushed = {"stroke": stroke, "radius_px": radius_px} if stroke else {"box": rounded(region.box)}
         regions.append(IgnoredRegion(**brushed, frames=frames))
     return tuple(regions)
@@ -170,9 +164,7 @@ class KEYMARK_PG_marker(bpy.types.PropertyGroup):
     )
     warning: Text("Warning", "Likely problems with the marker, one sentence a line")
     still_areas: Entries(type=KEYMARK_PG_ignored_region)
-    checked_clip: Text(
-        "Checked Clip", "Digest of the clip in which the marker was looked for", options=HIDDEN
-    )
+    checked_clip: Text("Checked Clip", "Digest of the clip in which the marker was sought", options=HIDDEN)
 
     @property
     def is_picked(self) -> bool:
@@ -206,6 +198,9 @@ def _redraw(_group: PropertyGroup, context: Context) -> None:
     redraw_footage(context)  # where the keypoints are drawn
 
 
+_shown = partial(Switch, default=True, update=_redraw)
+
+
 class KEYMARK_PG_keypoint_file(bpy.types.PropertyGroup):
     """A file of keypoints, or a folder with a file a frame."""
 
@@ -218,7 +213,7 @@ class KEYMARK_PG_keypoint_file(bpy.types.PropertyGroup):
     absolute_path: Text(
         "Absolute Path", "The same from the root, for a .blend that is saved elsewhere", options=HIDDEN
     )
-    is_used: Switch("Use", "Hold the motion against these keypoints", default=True, update=_redraw)
+    is_used: _shown("Use", "Hold the motion against these keypoints")
     contents: Text("Contents", "Digest of the file when it was loaded", options=HIDDEN)
 
 
@@ -241,17 +236,10 @@ class KEYMARK_PG_clicked_point(bpy.types.PropertyGroup):
 class KEYMARK_PG_follow(bpy.types.PropertyGroup):
     """What a take follows in the footage."""
 
-    use_markers: Switch(
-        "Follow Markers",
-        "Hold the motion against the colored markers of the list",
-        default=True,
-        update=_redraw,
-    )
-    use_keypoints: Switch(
+    use_markers: _shown("Follow Markers", "Hold the motion against the colored markers of the list")
+    use_keypoints: _shown(
         "Follow Keypoints",
         "Hold the motion against points of the body that a detector found or you clicked on",
-        default=True,
-        update=_redraw,
     )
     use_depth_hints: Switch(
         "Depth Hints",
@@ -265,11 +253,8 @@ class KEYMARK_PG_follow(bpy.types.PropertyGroup):
         "stays as it is",
         default=True,
     )
-    use_tracks: Switch(
-        "Follow Tracks",
-        "Hold the motion against the clip's own motion tracks that follow points of the body",
-        default=True,
-        update=_redraw,
+    use_tracks: _shown(
+        "Follow Tracks", "Hold the motion against the clip's own motion tracks that follow points of the body"
     )
     use_contours: Switch(
         "Follow Contours",

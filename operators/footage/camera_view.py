@@ -64,10 +64,7 @@ def free_box(area: Area, region: Region) -> Box:
 def picture_at_factor_one(
     region_size: tuple[int, int], picture: tuple[float, float], sensor_fit: str
 ) -> tuple[float, float]:
-    """Return width and height [px] of the camera's picture with one side as long as the region's: factor one.
-
-    The sensor fit tells the side: HORIZONTAL the width, VERTICAL the height, AUTO the longer one of each.
-    """
+    """Width and height [px] of the picture with the side that the sensor fit names as long as a region's."""
     if sensor_fit == "AUTO":
         scale = max(region_size) / max(picture)
     else:
@@ -79,11 +76,7 @@ def picture_at_factor_one(
 def camera_view(
     region_size: tuple[int, int], free: Box, picture: tuple[float, float]
 ) -> tuple[float, tuple[float, float]]:
-    """Return zoom and offset of Blender's camera view that fit a picture into a part of a region.
-
-    Blender draws the picture scaled by a factor, the square of (sqrt(2) + zoom / 50) / 2; an offset is a
-    share of twice the region's size times that factor.
-    """
+    """Zoom and offset that fit a picture into a part; Blender scales by (sqrt(2) + zoom / 50)^2 / 4."""
     left, bottom, right, top = free
     room = max(right - left - 2.0 * MARGIN_PX, 1.0), max(top - bottom - 2.0 * MARGIN_PX, 1.0)
     factor = min(have / want for have, want in zip(room, picture, strict=True))
@@ -146,7 +139,6 @@ def _shown(area: Area) -> View:
 
 
 def _fit(address: int) -> None:
-    """Fit the view of an area, if it is still there."""
     for window in bpy.context.window_manager.windows:
         for area in window.screen.areas:
             if area.as_pointer() == address and area.type == "VIEW_3D":

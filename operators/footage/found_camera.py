@@ -9,8 +9,10 @@ import numpy as np
 from bpy.types import PropertyGroup
 
 from ...core.arrays import Array
+from ...core.camera.camera_evidence import CameraEvidence, Uprights
+from ...core.camera.camera_fields import CameraPlacement
 from ...core.errors import InputError
-from ..bridge.footage import still_camera, write_found_camera
+from ..bridge.footage import read_lens, write_placement
 from ..shell.takes import footage_of
 from .load_footage import lens_is_guess
 from .properties import confirm_placement
@@ -18,7 +20,6 @@ from .properties import confirm_placement
 if TYPE_CHECKING:
     import bpy
 
-    from ...core.camera.camera_evidence import CameraEvidence
     from ...core.camera.camera_fit import CameraFit
 
 
@@ -54,10 +55,7 @@ class Drawing:
     of_performer: bool = False  # Whether a length that is typed is the performer's height
 
     def press(self, pixel: Pixel, frame: int, near: Callable[[Pixel], float]) -> None:
-        """Take the end of a line that is near, or begin a new line.
-
-        `near` tells the distance in the region from the mouse to a pixel, as a share of `NEAR_PX`.
-        """
+        """Take the end of a line that is `near`, by shares of `NEAR_PX` in the region, or begin a line."""
         if self.held is not None:  # the second click of a line that is drawn by two
             self.move(pixel)
             return
@@ -81,10 +79,7 @@ class Drawing:
             self.lines[number].ends[which] = pixel
 
     def release(self, far: Callable[[Pixel, Pixel], float]) -> bool:
-        """Let go of the held end, unless its line is too short to be one; return whether it was let go.
-
-        `far` tells the distance in the region between two pixels, as a share of `CLICKED_PX`.
-        """
+        """Let go of the held end unless both are near, by shares of `CLICKED_PX`; return whether."""
         if self.held is None:
             return False
         line = self.lines[self.held[0]]
@@ -101,10 +96,7 @@ class Drawing:
         self.kind, self.stays = KINDS[(KINDS.index(self.kind) + 1) % len(KINDS)], True
 
     def remove(self, near: Callable[[DrawnLine], float]) -> None:
-        """Remove the line under the mouse, else the last one; a line that is being drawn first.
-
-        `near` tells the distance in the region from the mouse to a line, as a share of `NEAR_PX`.
-        """
+        """Remove the line that is `near` the mouse, else the last one; a line that is being drawn first."""
         if not self.lines:
             return
         number = len(self.lines) - 1
@@ -157,9 +149,8 @@ def store_lines(take: "bpy.types.PropertyGroup", lines: list[DrawnLine]) -> None
         stored.start, stored.end = line.ends
 
 
-def evidence_of(lines: list[DrawnLine], stature_m: float) -> "CameraEvidence":
+def evidence_of(lines: list[DrawnLine], stature_m: float) -> CameraEvidence:
     """What lines tell of the camera; the upper end of a known height is the higher one in the picture."""
-    from ...core.camera.camera_evidence import CameraEvidence, Uprights
 
     def ends(kind: str) -> Array:
         return np.array([line.ends for line in lines if line.kind == kind]).reshape(-1, 2, 2)
@@ -189,9 +180,6 @@ def show(drawing: Drawing | None) -> None:
     _running = drawing
 
 
-# --- A camera that was found: given to the take's camera, and said in words
-
-
 HINTS = {
     "height": "Height is kept: draw something of known height, or the performer nearer and farther away",
     "tilt": "Tilt is kept: draw verticals farther apart, or the performer nearer and farther away",
@@ -208,14 +196,6 @@ NOTHING_FOUND = (
 CONTRADICTION = "The lines are {px:.1f} px off: one of them is not what it is said to be, or lies wrong"
 
 
-def fit_take(take: PropertyGroup, evidence: "CameraEvidence") -> "CameraFit":
-    """Find a take's camera from what its picture shows; a lens that nobody guessed is kept."""
-    from ...core.camera.camera_fit import fit_camera
-
-    camera = still_camera(footage_of(take.id_data, take))
-    return fit_camera(camera, evidence, lens_is_known=not lens_is_guess(take))
-
-
 def is_found(fit: "CameraFit") -> bool:
     """Whether a picture determines anything of its camera."""
     return len(fit.kept) < len(fit.std)
@@ -226,7 +206,9 @@ def write_fit(take: PropertyGroup, fit: "CameraFit") -> None:
     if not is_found(fit):
         raise InputError(NOTHING_FOUND)
     lens_was_guess = lens_is_guess(take)
-    write_found_camera(footage_of(take.id_data, take), fit.camera)
+    # Where Blender measures the sensor along the other side, the same factor applies.
+    take.camera.data.lens *= fit.camera.lens_mm / read_lens(footage_of(take.id_data, take)).lens_mm
+    write_placement(take.camera, CameraPlacement.of(fit.camera.matrix_world))
     confirm_placement(take)
     if "lens" not in fit.kept:
         for other in take.id_data.keymark.takes:
@@ -238,8 +220,8 @@ def write_fit(take: PropertyGroup, fit: "CameraFit") -> None:
 def values(fit: "CameraFit") -> str:
     """The camera found, with the deviations of what the picture determines."""
     kept = {name: " (kept)" if name in fit.kept else "" for name in HINTS}
-    said = (fit.in_words(name) + kept[name] for name in HINTS)
-    return "   ".join(part[:1].upper() + part[1:] for part in said)
+    parts = (fit.in_words(name) + kept[name] for name in HINTS)
+    return "   ".join(part[:1].upper() + part[1:] for part in parts)
 
 
 def deviations(fit: "CameraFit") -> str:

@@ -5,15 +5,16 @@ from itertools import islice
 from pathlib import Path
 
 import bpy
-from bpy.types import Context, Event, MovieClip, Object, PropertyGroup
+from bpy.types import Context, Event, MovieClip, Object, Operator, PropertyGroup
 
 from ...core.errors import InputError
 from ...core.files.paths import VIDEOS
 from ...core.markers.region_tracks import is_variable_frame_rate
 from ..bridge.footage import attach_footage, is_guess, is_missing
 from ..bridge.footage_camera import is_startup_camera, set_background, shows_behind, solved_camera
-from ..shell.base_operator import BaseOperator, browse, chosen_file, footage, idle, of_context, of_take, warn
-from ..shell.fields import HIDDEN, SKIP_SAVE, Switch, Text
+from ..shell import need
+from ..shell.base_operator import BaseOperator, browse, chosen_file, operator, warn
+from ..shell.fields import HIDDEN, SKIP_SAVE, File, Switch, Text
 from ..shell.notes import give_notices
 from ..shell.results import clear_review
 from ..shell.takes import NO_GUESS, active_take, add_take, as_numbers, find_take, footage_of
@@ -123,19 +124,14 @@ def lens_is_guess(take: PropertyGroup) -> bool:
 
 
 def _camera_for(take: PropertyGroup, clip: MovieClip) -> Object | None:
-    """Return the camera to put a clip behind; None for a new one.
-
-    The take's own, unless another take uses it for another clip; else the one animated by the clip's camera
-    solution; else that of a take with the same clip; else the scene's, unless a take uses it or it is the one
-    of Blender's startup file.
-    """
+    """The camera to put a clip behind, one of Blender's startup file aside; None for a new one."""
     scene = take.id_data
-    others = [other for other in scene.keymark.takes if other != take]
+    rest = [other for other in scene.keymark.takes if other != take]
     candidates = [
-        *([take.camera] if take.camera not in {each.camera for each in others if each.clip != clip} else []),
+        *([take.camera] if take.camera not in {each.camera for each in rest if each.clip != clip} else []),
         solved_camera(scene, clip),
-        *(other.camera for other in others if other.clip == clip),
-        *([scene.camera] if scene.camera not in {each.camera for each in others} else []),
+        *(other.camera for other in rest if other.clip == clip),
+        *([scene.camera] if scene.camera not in {each.camera for each in rest} else []),
     ]
     for camera in candidates:
         if camera is None or camera.type != "CAMERA" or camera.name not in scene.objects:
@@ -145,17 +141,14 @@ def _camera_for(take: PropertyGroup, clip: MovieClip) -> Object | None:
     return None
 
 
-# --- A take's footage: loaded, found again or used from this file, and its guessed camera confirmed
-
-
-any_clip = of_context(lambda _: bpy.data.movieclips, "This file has no clip; load the footage")
+any_clip = need.of_context(lambda _: bpy.data.movieclips, "This file has no clip; load the footage")
 
 
 class KEYMARK_OT_use_clip(BaseOperator, bpy.types.Operator):
     """Use a clip that is in this file already, with the lens and the camera solution of its tracking"""
 
     bl_label = "Use Clip"
-    requirements = (any_clip, idle)
+    requirements = (any_clip, need.idle)
 
     clip: Text("Clip", "Name of the clip in this file; without one, the scene's own", options=SKIP_SAVE)
     as_new_take: Switch(
@@ -179,33 +172,25 @@ class KEYMARK_OT_use_clip(BaseOperator, bpy.types.Operator):
         return None
 
 
-guessed_lens = of_take(lambda state: state.take.guessed_lens_mm > 0.0, "The lens is not a guess")
+guessed_lens = need.of_take(lambda state: state.take.guessed_lens_mm > 0.0, "The lens is not a guess")
 
 
-class KEYMARK_OT_keep_lens(BaseOperator, bpy.types.Operator):
+@operator("Confirm Lens", guessed_lens)
+def keep_lens(operator: Operator, context: Context, take: PropertyGroup) -> None:
     """Confirm that the camera's focal length is right, so that it no longer counts as a guess"""
-
-    bl_label = "Confirm Lens"
-    requirements = (guessed_lens,)
-
-    def run(self, context: Context) -> None:
-        camera = active_take(context.scene).camera
-        for take in context.scene.keymark.takes:
-            if take.camera == camera:
-                take.guessed_lens_mm = 0.0
+    camera = active_take(context.scene).camera
+    for take in context.scene.keymark.takes:
+        if take.camera == camera:
+            take.guessed_lens_mm = 0.0
 
 
-guessed_placement = of_take(lambda state: state.placement_is_guess, "The camera's place is not a guess")
+guessed_placement = need.of_take(lambda state: state.placement_is_guess, "The camera's place is not a guess")
 
 
-class KEYMARK_OT_keep_camera(BaseOperator, bpy.types.Operator):
+@operator("Confirm Camera", guessed_placement)
+def keep_camera(operator: Operator, context: Context, take: PropertyGroup) -> None:
     """Confirm the height and the tilt of the camera, so that they no longer count as a guess"""
-
-    bl_label = "Confirm Camera"
-    requirements = (guessed_placement,)
-
-    def run(self, context: Context) -> None:
-        confirm_placement(active_take(context.scene))
+    confirm_placement(active_take(context.scene))
 
 
 def hide_startup_cube(context: Context) -> None:
@@ -240,11 +225,9 @@ class KEYMARK_OT_load_footage(BaseOperator, bpy.types.Operator):
     """Load a clip behind the camera, and set the scene's size, frame rate and range from it"""
 
     bl_label = "Load Footage"
-    requirements = (idle,)
+    requirements = (need.idle,)
 
-    filepath: Text(
-        "File Path", "A video, or one image of a numbered sequence", subtype="FILE_PATH", options=SKIP_SAVE
-    )
+    filepath: File("A video, or one image of a numbered sequence")
     as_new_take: Switch(
         "As New Take",
         "Add a take for this clip, instead of giving the active take another clip",
@@ -264,10 +247,8 @@ class KEYMARK_OT_load_footage(BaseOperator, bpy.types.Operator):
     def run(self, context: Context) -> None:
         path = chosen_file(self, "a video, or one image of a numbered sequence")
         take = load_into_take(context, path, self.as_new_take)
-        clip, extent = (
-            take.clip,
-            f"{take.clip.frame_duration} frames of {take.clip.size[0]} x {take.clip.size[1]}",
-        )
+        clip = take.clip
+        extent = f"{clip.frame_duration} frames of {clip.size[0]} x {clip.size[1]}"
         self.report({"INFO"}, f"Loaded {clip.name}: {extent} pixels")
         if lens_is_guess(take):
             guess = f"The lens is a guess: {take.guessed_lens_mm:.1f} mm"
@@ -278,14 +259,9 @@ class KEYMARK_OT_relocate_clip(BaseOperator, bpy.types.Operator):
     """Choose where the take's clip is now; markers, keyframes, motion and camera stay as they are"""
 
     bl_label = "Find Clip"
-    requirements = (footage, idle)
+    requirements = (need.footage, need.idle)
 
-    filepath: Text(
-        "File Path",
-        "Where the clip is now: the video, or one image of the sequence",
-        subtype="FILE_PATH",
-        options=SKIP_SAVE,
-    )
+    filepath: File("Where the clip is now: the video, or one image of the sequence")
     filter_glob: Text(default=PATTERNS, options=HIDDEN)
     filter_folder: Switch(default=True, options=HIDDEN)
 

@@ -14,7 +14,6 @@ from .properties import draw_part
 
 
 def _draw_camera(column: UILayout, context: Context, state: TakeState) -> None:
-    """Draw the lens and the camera's place, whether that is a guess, and the tools that find it."""
     scene, take, camera = context.scene, state.take, state.take.camera
     if camera.name not in scene.objects:
         column.label(text="Camera is not in the scene", icon="ERROR")
@@ -53,15 +52,8 @@ class KEYMARK_PT_footage(StepPanel, bpy.types.Panel):
     bl_label = "Clip"
     step = "footage"
     options = "KEYMARK_PT_footage_options"
-
-    @classmethod
-    def summary(cls, state: TakeState) -> str:
-        clip = state.take.clip
-        return "" if clip is None else f"{clip.frame_duration} frames"
-
-    @classmethod
-    def is_wrong(cls, state: TakeState) -> bool:
-        return bool(state.take.clip_state.missing)
+    summary = staticmethod(lambda s: f"{s.take.clip.frame_duration} frames" if s.take.clip else "")
+    is_wrong = staticmethod(lambda s: s.take.clip_state.missing)
 
     def draw_step(self, context: Context, body: UILayout, state: TakeState) -> None:
         take = state.take
@@ -117,7 +109,6 @@ class KEYMARK_MT_clips(bpy.types.Menu):
 
 
 def _draw_clip(column: UILayout, context: Context, take: PropertyGroup) -> None:
-    """Draw the clip's size, length and rate, or that its file is missing."""
     clip, state = take.clip, take.clip_state
     if state.missing:
         box = column.box().column()

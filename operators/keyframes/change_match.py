@@ -4,13 +4,16 @@ from collections.abc import Callable
 from math import degrees
 
 import bpy
-from bpy.types import Context, OperatorProperties, PropertyGroup
+from bpy.types import Context, Operator, OperatorProperties, PropertyGroup
 
 from ...core.errors import InputError
 from ...core.prior.texts import COMPOSED
+from ..bridge.keyframes import candidate_posture, remove_keyframes, take_over
+from ..bridge.pose import write_posture
 from ..bridge.scene_frames import show_frame
 from ..overlays.tools import look_at
-from ..shell.base_operator import BaseOperator, Unchanged, actor, idle, matches, of_take
+from ..shell import need
+from ..shell.base_operator import BaseOperator, Unchanged, operator
 from ..shell.fields import Integer, Switch
 from ..shell.keyed_frames import show_keyframes
 from ..shell.notes import note_contradictions
@@ -25,11 +28,9 @@ class KEYMARK_OT_jump_to_match(BaseOperator, bpy.types.Operator):
     """Go to a found keyframe"""
 
     bl_label = "Jump to Found Keyframe"
-    requirements = (matches,)
+    requirements = (need.matches,)
 
-    direction: directions(
-        "found keyframe", "Direction from the current frame; from the last one it goes to the first"
-    )
+    direction: directions("found keyframe", "Direction from this frame; from the last one on to the first")
     only_doubtful: Switch("Only Doubtful", "Go to doubtful ones only, the most doubtful first", default=False)
 
     @classmethod
@@ -59,67 +60,49 @@ class KEYMARK_OT_jump_to_match(BaseOperator, bpy.types.Operator):
         take.matching.shown_match = wanted
 
 
-here = of_take(
+here = need.of_take(
     lambda state: state.match_at(state.take.id_data.frame_current_final) >= 0,
     "This frame holds no found keyframe; choose one in the list",
 )
 
 
-class KEYMARK_OT_accept_match(BaseOperator, bpy.types.Operator):
+@operator("Accept", need.actor, need.matches, here, need.idle)
+def accept_match(operator: Operator, context: Context, take: PropertyGroup) -> None:
     """Count this pose as right in the picture: finding again leaves it alone, its depth stays as found"""
-
-    bl_label = "Accept"
-    requirements = (actor, matches, here, idle)
-
-    def run(self, context: Context) -> None:
-        from ..bridge.keyframes import take_over
-
-        take = active_take(context.scene)
-        match = match_here(take)
-        if TakeState(take).of_match(match) != "FOUND":
-            raise Unchanged(f"frame {match.frame:g} is no found keyframe any more")
-        frame = round(match.frame, 3)
-        take_over(take.armature, take.keyframe_action, (frame,))
-        note_contradictions(take, frame, ())
-        self.report({"INFO"}, f"Frame {frame:g} counts as right in the picture now")
+    match = match_here(take)
+    if TakeState(take).of_match(match) != "FOUND":
+        raise Unchanged(f"frame {match.frame:g} is no found keyframe any more")
+    frame = round(match.frame, 3)
+    take_over(take.armature, take.keyframe_action, (frame,))
+    note_contradictions(take, frame, ())
+    operator.report({"INFO"}, f"Frame {frame:g} counts as right in the picture now")
 
 
-class KEYMARK_OT_remove_match(BaseOperator, bpy.types.Operator):
+@operator("Remove", need.actor, need.matches, here, need.idle)
+def remove_match(operator: Operator, context: Context, take: PropertyGroup) -> None:
     """Remove this found keyframe and its keys; a pose of your own at its frame stays"""
-
-    bl_label = "Remove"
-    requirements = (actor, matches, here, idle)
-
-    def run(self, context: Context) -> None:
-        from ..bridge.keyframes import remove_keyframes
-
-        take = active_take(context.scene)
-        matching, match = take.matching, match_here(take)
-        frame = round(match.frame, 3)
-        if TakeState(take).of_match(match) == "FOUND":
-            remove_keyframes(take.armature, take.keyframe_action, (frame,))
-        note_contradictions(take, frame, ())
-        removed = TakeState(take).match_at(frame)
-        matching.matches.remove(removed)
-        matching.shown_match = max(0, min(removed, len(matching.matches) - 1))
-        self.report({"INFO"}, f"Removed the found keyframe at frame {frame:g}")
+    matching, match = take.matching, match_here(take)
+    frame = round(match.frame, 3)
+    if TakeState(take).of_match(match) == "FOUND":
+        remove_keyframes(take.armature, take.keyframe_action, (frame,))
+    note_contradictions(take, frame, ())
+    removed = TakeState(take).match_at(frame)
+    matching.matches.remove(removed)
+    matching.shown_match = max(0, min(removed, len(matching.matches) - 1))
+    operator.report({"INFO"}, f"Removed the found keyframe at frame {frame:g}")
 
 
-class KEYMARK_OT_remove_found(BaseOperator, bpy.types.Operator):
+@operator("Remove All Found", need.actor, need.matches, need.idle)
+def remove_found(operator: Operator, context: Context, take: PropertyGroup) -> None:
     """Remove every found keyframe that you have neither changed, accepted nor chosen the pose of"""
+    from .found_result import clear_found
 
-    bl_label = "Remove All Found"
-    requirements = (actor, matches, idle)
-
-    def run(self, context: Context) -> None:
-        from .found_result import clear_found
-
-        scene, take = context.scene, active_take(context.scene)
-        if not known_matches(take, by_hand=False):
-            raise Unchanged("all found keyframes are yours by now; nothing was removed")
-        count = clear_found(take)
-        scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
-        self.report({"INFO"}, f"Removed {count} found keyframes")
+    scene, take = context.scene, active_take(context.scene)
+    if not known_matches(take, by_hand=False):
+        raise Unchanged("all found keyframes are yours by now; nothing was removed")
+    count = clear_found(take)
+    scene.frame_set(scene.frame_current, subframe=scene.frame_subframe)
+    operator.report({"INFO"}, f"Removed {count} found keyframes")
 
 
 NOTICEABLE_TURN_DEG = 15.0
@@ -128,11 +111,7 @@ PAIRS = {("arm.L", "arm.R"): "arms", ("leg.L", "leg.R"): "legs"}
 
 
 def candidate_title(match: PropertyGroup, candidate: PropertyGroup) -> str:
-    """What tells a candidate from the first one: its turn, then the name of its posture.
-
-    Postures that were composed have the name of one that they resemble, which often is the same for all and
-    tells a person little: instead the limbs are named that are elsewhere.
-    """
+    """What tells a candidate from the first: its turn, then its posture's name, or limbs if composed."""
     angle_deg, turn = degrees(candidate.turned), ""  # hardly seen
     if abs(angle_deg) > 180.0 - NOTICEABLE_TURN_DEG:
         turn = "Turned round"
@@ -187,12 +166,11 @@ class KEYMARK_OT_replace_match(CandidateOperator, bpy.types.Operator):
     """Key this posture instead; what is keyed at the frame is replaced"""
 
     bl_label = "Take Candidate"
-    requirements = (actor, matches, here, idle)
+    requirements = (need.actor, need.matches, here, need.idle)
 
     source = staticmethod(match_here)
 
     def run(self, context: Context) -> None:
-        from ..bridge.keyframes import candidate_posture
         from .found_result import key_matches
 
         take = active_take(context.scene)
@@ -211,14 +189,11 @@ class KEYMARK_OT_show_offered(CandidateOperator, bpy.types.Operator):
     """Pose the actor like this; nothing is keyed until you store it"""
 
     bl_label = "Show Candidate"
-    requirements = (actor, idle)
+    requirements = (need.actor, need.idle)
 
     source = staticmethod(lambda take: TakeState(take).offered_at(take.id_data.frame_current_final))
 
     def run(self, context: Context) -> None:
-        from ..bridge.keyframes import candidate_posture
-        from ..bridge.pose import write_posture
-
         take = active_take(context.scene)
         offered = self.chosen(take)
         show_keyframes(take)

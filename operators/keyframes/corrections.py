@@ -10,12 +10,18 @@ from bpy.types import Context, Operator, OperatorProperties, PropertyGroup, Scen
 
 from ...core.arrays import Array
 from ...core.body.human import HUMAN, TRUNK, limb_of
+from ...core.body.kinematics import Body
+from ...core.body.posture import Posture
 from ...core.camera.camera import Camera
 from ...core.errors import InputError
+from ..bridge.armature import read_body
 from ..bridge.footage import read_camera
+from ..bridge.pose import read_posture, write_posture
 from ..bridge.scene_frames import at_scene_frame, pose_of, restore_pose, showing_action
 from ..follow.evidence import scene_evidence
-from ..shell.base_operator import BaseOperator, Unchanged, actor, camera, footage, idle, keyframes
+from ..library.registry import named_libraries
+from ..shell import need
+from ..shell.base_operator import BaseOperator, Unchanged
 from ..shell.fields import SKIP_SAVE, Choice, Switch
 from ..shell.job_progress import job_is_running
 from ..shell.keyed_frames import SAME_FRAME, has_frame, show_keyframes
@@ -26,19 +32,14 @@ from .found_properties import known_matches, neighbor
 from .posing import SAME_POSE, key_pose, note_corrected
 
 if TYPE_CHECKING:
-    from ...core.body.kinematics import Body
-    from ...core.body.posture import Posture
     from ...core.poses.turned import Turned
 
 
 DRAGGING = "keymark.drag_joints"
 
 
-def shown_pose(take: PropertyGroup) -> "tuple[Body, Posture]":
+def shown_pose(take: PropertyGroup) -> tuple[Body, Posture]:
     """The actor's sizes, and the posture that it shows now."""
-    from ..bridge.armature import read_body
-    from ..bridge.pose import read_posture
-
     body = read_body(take.armature)
     return body, read_posture(take.armature, body).posture
 
@@ -49,15 +50,9 @@ def camera_now(scene: Scene, take: PropertyGroup) -> Camera:
 
 
 def set_corrected(
-    operator: Operator, context: Context, take: PropertyGroup, posture: "Posture", in_depth: bool
+    operator: Operator, context: Context, take: PropertyGroup, posture: Posture, in_depth: bool
 ) -> None:
-    """Give the actor a corrected posture; where this frame holds a keyframe, that is the new one at once.
-
-    A found keyframe is the person's from then on, in space too where it was moved `in_depth`, and the
-    operator reports how many around it were improved.
-    """
-    from ..bridge.pose import write_posture
-
+    """Give the actor a corrected posture, at once as the frame's keyframe; tell how many near improved."""
     show_keyframes(take)
     write_posture(take.armature, posture)
     redraw_footage(context)
@@ -73,22 +68,17 @@ def set_corrected(
 def put_right(
     scene: Scene,
     take: PropertyGroup,
-    body: "Body",
-    found: "Posture",
-    shown: "Posture",
+    body: Body,
+    found: Posture,
+    shown: Posture,
     places: Mapping[str, Array],
     held: str,
-) -> "Posture":
-    """A posture `shown` after points were set in the camera's view, leaning as is likeliest now.
-
-    It stays as it is unless the depth at this keyframe was found: `found` is what that was. `places` (3,) are
-    where the points lie in the view, by name.
-    """
+) -> Posture:
+    """A posture `shown` with points at `places` (3,), leaning as is likely where `found` told the depth."""
     frame = scene.frame_current_final
     if not has_frame(TakeState(take).keyed.all, frame) or not TakeState(take).depth_is_found(frame):
         return shown
     from ...core.poses import picture_depth
-    from ..library.registry_files import named_libraries
 
     match = known_matches(take).get(round(frame, 3))
     confidence = 0.5 if match is None else match.confidence  # even odds where it was corrected before
@@ -108,7 +98,7 @@ class KEYMARK_OT_copy_neighbor(BaseOperator, bpy.types.Operator):
     """Copy the pose of the keyframe before or after this frame; the performer stays in place"""
 
     bl_label = "Copy from Neighbor"
-    requirements = (actor, keyframes, idle)
+    requirements = (need.actor, need.keyframes, need.idle)
 
     direction: Choice("Neighbor", "The keyframe whose pose is copied", items=DIRECTIONS)
 
@@ -117,9 +107,6 @@ class KEYMARK_OT_copy_neighbor(BaseOperator, bpy.types.Operator):
         return {name: text for name, _, text in DIRECTIONS}[properties.direction]
 
     def run(self, context: Context) -> None:
-        from ...core.body.posture import Posture
-        from ..bridge.pose import read_posture
-
         take, scene = active_take(context.scene), context.scene
         now, keyed = scene.frame_current_final, TakeState(take).keyed.all
         beside = neighbor(keyed, now, self.direction, SAME_FRAME)
@@ -153,7 +140,7 @@ class KEYMARK_OT_turn_performer(BaseOperator, bpy.types.Operator):
     """Turn the performer to face this way, at the same place, and fit the pose to the footage again"""
 
     bl_label = "Turn"
-    requirements = (footage, camera, actor, idle)
+    requirements = (need.footage, need.camera, need.actor, need.idle)
 
     facing: Choice("Facing", "Where the performer faces", items=FACINGS)
     sides: Choice("Left and Right", "What becomes of arms and legs in the picture", items=SIDES)
@@ -187,9 +174,8 @@ class KEYMARK_OT_turn_performer(BaseOperator, bpy.types.Operator):
         self.report({"INFO"}, f"Turned: {title}; not fitted to the footage" if fitted is None else fits)
 
 
-def _fitted(context: Context, take: PropertyGroup, ways: "list[Turned]") -> "list[Posture]":
+def _fitted(context: Context, take: PropertyGroup, ways: "list[Turned]") -> list[Posture]:
     """Turned postures fitted to the frame, the likeliest first; none if it shows nothing to fit to."""
-    from ..bridge.pose import write_posture
     from ..bridge.take_from_scene import fit_to_frame, frame_in_footage
 
     found: list[tuple[float, Posture]] = []
@@ -212,10 +198,7 @@ LIMBS = {"arm.L": "left arm", "arm.R": "right arm", "leg.L": "left leg", "leg.R"
 
 
 def selected_limbs(take: PropertyGroup) -> list[str]:
-    """The parts of the body of which a bone is selected, in the order of `LIMBS`; the active one alone.
-
-    With all bones of the actor selected, as by A, nothing is meant in particular but the active bone.
-    """
+    """The parts of the body that are selected, in the order of `LIMBS`; of all of them the active bone's."""
     active = take.armature.data.bones.active
     chosen = {
         limb_of(bone.name)
@@ -242,9 +225,9 @@ class Ways:
     """A posture and the ways to flip it, the most plausible first."""
 
     key: tuple[int, float, str]  # Number of the armature in this session, scene frame, part of the body
-    postures: "tuple[Posture, ...]"  # The first is the one that was flipped
+    postures: tuple[Posture, ...]  # The first is the one that was flipped
 
-    def shown(self, posture: "Posture") -> int | None:
+    def shown(self, posture: Posture) -> int | None:
         """Which of the ways a posture is; None where it is none of them."""
         apart = [float(np.abs(posture.minus(way)).max()) for way in self.postures]
         nearest = int(np.argmin(apart))
@@ -258,7 +241,7 @@ class KEYMARK_OT_flip_depth(BaseOperator, bpy.types.Operator):
     """Lean the selected limb away from the camera, not toward it, or back; press again for other ways"""
 
     bl_label = "Flip Depth"
-    requirements = (footage, camera, actor, limb_chosen, idle)
+    requirements = (need.footage, need.camera, need.actor, limb_chosen, need.idle)
 
     limb: Choice(
         "Part",

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, field
 from math import ceil, floor
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import bpy
 import numpy as np
@@ -10,22 +10,23 @@ from bpy.types import Context, Event, PropertyGroup
 
 from ...core.arrays import Array
 from ...core.body.human import HUMAN, limb_of
+from ...core.body.kinematics import Body
+from ...core.body.posture import Posture
 from ..bridge.actor_bones import evaluated, joint_places
+from ..bridge.keyframes import read_keyframes
+from ..bridge.pose import write_posture
 from ..bridge.scene_frames import Pose, pose_of, restore_pose
 from ..follow.properties import segment_title
 from ..overlays.motion import window
 from ..overlays.tools import Handles, show_keys
-from ..shell.base_operator import BaseOperator, actor, all_met, call, idle, of_context, reported
+from ..shell import need
+from ..shell.base_operator import BaseOperator, all_met, call, reported
 from ..shell.fields import Choice, Switch, Vector
 from ..shell.footage_view import NAVIGATION, WorldInRegion, ui_scale, view_under
 from ..shell.job_progress import job_is_running
 from ..shell.take_state import TakeState
 from ..shell.takes import active_take, find_take, redraw_editors, redraw_sidebars_soon
 from .corrections import DRAGGING, camera_now, put_right, set_corrected, shown_pose
-
-if TYPE_CHECKING:
-    from ...core.body.kinematics import Body
-    from ...core.body.posture import Posture
 
 
 @dataclass
@@ -36,14 +37,14 @@ class JointDrag:
     view: WorldInRegion
     start: Array  # (3,) where the joint was [m]
     position: Array  # (2,) where the view showed it [px]
-    body: "Body"
-    posture: "Posture"  # The posture at the beginning
+    body: Body
+    posture: Posture  # The posture at the beginning
     pose: Pose  # The channels of the actor's bones at the beginning, to restore them
     mouse: tuple[int, int]  # Where the mouse was last, in the window [px]
     moved: Array = field(default_factory=lambda: np.zeros(2))
     """How far it has been dragged across the view [px]."""
     depth_m: float = 0.0  # How far it has been pushed away from the viewer [m]
-    shown: "Posture | None" = None  # The posture it has come to
+    shown: Posture | None = None  # The posture it has come to
     in_depth: bool = False  # whether it was put right in space, not in the picture alone
 
     def follow(self, event: Event) -> None:
@@ -71,7 +72,6 @@ class JointDrag:
     def show(self, take: PropertyGroup) -> None:
         """Show the posture that the drag has come to; nothing is keyed."""
         from ...core.poses.dragged import dragged
-        from ..bridge.pose import write_posture
 
         pushed, floor_m = self.depth_m != 0.0, take.matching.known_floor_m
         self.shown = dragged(self.body, self.posture, self.joint, self.place, self.sight, pushed, floor_m)
@@ -87,7 +87,7 @@ class KEYMARK_OT_move_joint(BaseOperator, bpy.types.Operator):
     """Move a joint of the actor to a place; the limb follows, with its lengths and within its joint limits"""
 
     bl_label = "Move Joint"
-    requirements = (actor, idle)
+    requirements = (need.actor, need.idle)
 
     joint: Choice(
         "Joint",
@@ -139,7 +139,7 @@ HOVER_KEYS = "{joint}   |   {keys}"
 DRAG_KEYS = "{joint}   |   Ctrl: In Depth, Up Is Away   |   Shift: Precise   |   Esc, Right Click: Cancel"
 
 
-not_dragging = of_context(
+not_dragging = need.of_context(
     lambda context: not job_is_running(context, DRAGGING),
     "Joints can be dragged already; Enter in the viewport ends it",
 )
@@ -161,7 +161,7 @@ class KEYMARK_OT_drag_joints(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context: Context) -> bool:
-        return all_met(cls, context, actor, idle, not_dragging)
+        return all_met(cls, context, need.actor, need.idle, not_dragging)
 
     def invoke(self, context: Context, event: Event) -> set[str]:
         context.scene.keymark.overlays.only_character = False
@@ -176,14 +176,14 @@ class KEYMARK_OT_drag_joints(bpy.types.Operator):
 
     def modal(self, context: Context, event: Event) -> set[str]:
         take = find_take(context.scene)
-        if take is None or actor(context, TakeState(take)) is not None:
+        if take is None or need.actor(context, TakeState(take)) is not None:
             self.cancel(context)
             return {"CANCELLED"}
         if (self._drag or self._done) and context.scene.frame_current_final != self._frame:
             self._drag, self._done = None, ()  # Blender has evaluated another pose
             self.report({"WARNING"}, f"The pose dragged at frame {self._frame:g} was not stored")
             self._show(context)
-        if self._drag is None and idle(context, None) is not None:
+        if self._drag is None and need.idle(context, None) is not None:
             return {"PASS_THROUGH"}  # a job that was started meanwhile
         if self._drag is not None:
             return self._dragging(context, take, event)
@@ -232,7 +232,6 @@ class KEYMARK_OT_drag_joints(bpy.types.Operator):
         redraw_sidebars_soon()
 
     def _store(self, context: Context, take: PropertyGroup) -> set[str]:
-        """Store what the drags have come to, and end the tool."""
         drags, self._done = self._done, ()
         if drags:
             with reported(self):
@@ -253,8 +252,6 @@ class KEYMARK_OT_drag_joints(bpy.types.Operator):
         self._show(context)
 
     def _begin(self, context: Context, take: PropertyGroup, view: WorldInRegion, event: Event) -> None:
-        from ..bridge.keyframes import read_keyframes
-
         joint = self._handles.hovered
         if joint is None:
             return
@@ -276,8 +273,6 @@ class KEYMARK_OT_drag_joints(bpy.types.Operator):
                 self._drag = JointDrag(joint, view, start, position, body, posture, pose, mouse)
 
     def _dragging(self, context: Context, take: PropertyGroup, event: Event) -> set[str]:
-        from ..bridge.pose import write_posture
-
         drag = self._drag
         if event.value == "PRESS" and event.type in BACK:
             self._drag = None

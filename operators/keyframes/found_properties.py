@@ -1,21 +1,18 @@
 """Properties of finding keyframes: settings, and found keyframes with their candidates."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import bpy
 from bpy.types import Context, PropertyGroup
 
 from ...core.body.human import HUMAN
+from ...core.prior.keyframes import Matched
 from ...core.prior.texts import EVERY_LIBRARY
 from ..bridge.scene_frames import show_frame
 from ..library.registry import library_items
 from ..shell.fields import HIDDEN, Choice, Entries, Integer, Number, Switch, Text, Vector
 from ..shell.take_state import TakeState
-
-if TYPE_CHECKING:
-    from ...core.prior.keyframes import Matched
-
 
 PLACE_VALUES = 6  # Degrees of freedom of the hips' pose, stored apart because Blender's vectors are short
 FLOORS = (
@@ -29,7 +26,6 @@ _entries: list[Entry] = []  # Items of the menu of libraries: Blender keeps no c
 
 
 def _libraries(matching: PropertyGroup, context: Context | None) -> list[Entry]:
-    """All of them as one entry, each registered library, and the chosen one even if it is missing."""
     every = (EVERY_LIBRARY, "All Libraries", "Each limb may come from another library", "ASSET_MANAGER")
     rows = [every, *(item[:4] for item in library_items(matching, context))]
     name = matching.library_name
@@ -37,15 +33,6 @@ def _libraries(matching: PropertyGroup, context: Context | None) -> list[Entry]:
         rows.append((name, name, "This library is not there any more; import it again", "ERROR"))
     _entries[:] = [(*row, number) for number, row in enumerate(rows)]
     return _entries
-
-
-def _library_number(matching: PropertyGroup) -> int:
-    names = [entry[0] for entry in _libraries(matching, None)]
-    return names.index(matching.library_name) if matching.library_name in names else 0
-
-
-def _set_library(matching: PropertyGroup, number: int) -> None:
-    matching.library_name = _libraries(matching, None)[number][0]
 
 
 def _shown_match(matching: PropertyGroup) -> int:
@@ -57,7 +44,6 @@ def _shown_match(matching: PropertyGroup) -> int:
 
 
 def _choose_match(matching: PropertyGroup, index: int) -> None:
-    """Go to the frame of the found keyframe that was clicked in the list."""
     matching.active_match = index
     if index < len(matching.matches):
         show_frame(matching.id_data, matching.matches[index].frame)
@@ -68,9 +54,7 @@ class KEYMARK_PG_candidate(bpy.types.PropertyGroup):
 
     name: Text("Posture", "The posture's name in its library")
     mirrored: Switch("Mirrored", "Whether left and right of the posture are exchanged")
-    confidence: Number(
-        "Confidence", "Probability that this posture is about right", subtype="FACTOR", min=0.0, max=1.0
-    )
+    confidence: Number("Confidence", "Chance that this posture is right", subtype="FACTOR", min=0.0, max=1.0)
     place: Vector("Place", "Location and rotation of the hips", size=PLACE_VALUES)
     turned: Number(
         "Turned",
@@ -106,9 +90,7 @@ class KEYMARK_PG_match(bpy.types.PropertyGroup):
         return float(self.candidate.confidence)
 
     @property
-    def matched(self) -> "Matched":
-        from ...core.prior.keyframes import Matched
-
+    def matched(self) -> Matched:
         chosen = self.candidate
         return Matched(self.library, chosen.name, chosen.mirrored, min(max(self.confidence, 0.0), 1.0))
 
@@ -116,9 +98,7 @@ class KEYMARK_PG_match(bpy.types.PropertyGroup):
 class FloorSettings:
     """Mixin of properties: the floor that performers stand on while they are sought."""
 
-    floor: Choice(
-        "Floor", "Source of the floor's height, which determines the performer's distance", items=FLOORS
-    )
+    floor: Choice("Floor", "Source of the floor's height, which tells the performer's distance", items=FLOORS)
     floor_height: Number(
         "Floor Height",
         "Height of the floor that the performer stands on",
@@ -143,8 +123,10 @@ class KEYMARK_PG_matching(FloorSettings, bpy.types.PropertyGroup):
         "What is known of postures while keyframes are sought: all libraries, or one with "
         "the performer's own motion",
         items=_libraries,
-        get=_library_number,
-        set=_set_library,
+        get=lambda matching: next(
+            (entry[-1] for entry in _libraries(matching, None) if entry[0] == matching.library_name), 0
+        ),
+        set=lambda matching, index: setattr(matching, "library_name", _libraries(matching, None)[index][0]),
     )
     reason: Text("Reason", "Whether what was found last is usable, and what speaks for or against it")
     fit: Number(
@@ -187,10 +169,7 @@ class KEYMARK_PG_matching(FloorSettings, bpy.types.PropertyGroup):
     )
 
 
-# --- What a take's found keyframes were made of, and the way from one frame to another
-
-
-def known_matches(take: PropertyGroup, by_hand: bool = True) -> "dict[float, Matched]":
+def known_matches(take: PropertyGroup, by_hand: bool = True) -> dict[float, Matched]:
     """What the take's found keyframes were made of, by scene frame, those changed since left out.
 
     Those whose candidate a person chose only where `by_hand`: the others may be found anew, and removed.

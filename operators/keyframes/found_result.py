@@ -43,12 +43,10 @@ def add_match(take: PropertyGroup, frame: float, library: str) -> PropertyGroup:
     return matches[place]
 
 
-def add_candidate(
-    match: PropertyGroup, posture: Posture, name: str, mirrored: bool, confidence: float
-) -> None:
+def add_candidate(match: PropertyGroup, posture: Posture, name: str, mirror: bool, confidence: float) -> None:
     """Add a posture that a found keyframe's frame may show; the first one added is the one it has."""
     candidate = match.candidates.add()
-    candidate.name, candidate.mirrored, candidate.confidence = name, mirrored, confidence
+    candidate.name, candidate.mirrored, candidate.confidence = name, mirror, confidence
     vector = posture.to_vector()
     candidate.place, candidate.turns = vector[:PLACE_VALUES], vector[PLACE_VALUES:]
     first = candidate_posture(match.candidates[0])
@@ -71,10 +69,7 @@ def key_matches(take: PropertyGroup, frames: ArrayLike, postures: Sequence[Postu
 
 
 def write_poses(scene: Scene, made: SceneSession) -> PropertyGroup:
-    """Key what was found beside what is decided, in place of what was found earlier; returns the take.
-
-    Where the world was moved so that the floor is z = 0, the camera is.
-    """
+    """Key what was found beside what is decided, and move the camera as the floor did; returns the take."""
     take, posed = take_by_identifier(scene, made.take), made.session[Posed]
     assert posed.found is not None
     clear_found(take)
@@ -97,11 +92,7 @@ def write_poses(scene: Scene, made: SceneSession) -> PropertyGroup:
 
 
 def clear_found(take: PropertyGroup) -> int:
-    """Remove the found keyframes that nobody has decided on; returns how many had keys.
-
-    What the animator has posed meanwhile, or changed of them, stays and is theirs for good. What they chose
-    the candidate of stays as it is.
-    """
+    """Remove the found keyframes that nobody changed or chose; what was stays. Returns how many had keys."""
     actor, matching = actor_of(take), take.matching
     undecided = tuple(known_matches(take, by_hand=False))
     if take.keyframe_action is not None:
@@ -120,18 +111,15 @@ def clear_found(take: PropertyGroup) -> int:
 def write_found(
     take: PropertyGroup, clip_frames: Array, keyframes: Sequence[Keyframe], found: FoundPoses
 ) -> None:
-    """Key found postures, in order of frame, and store what is known of them; none may have an entry yet.
-
-    `clip_frames` (F,) are the scene frames of the clip's.
-    """
+    """Key found postures of a clip's scene frames (F,), and store what is known of them as new entries."""
     candidates = {frame.index: frame.candidates for frame in found.frames}
     for keyframe in keyframes:
-        said, frame = keyframe.matched, float(clip_frames[keyframe.index])
-        assert said is not None
-        match = add_match(take, frame, said.library)
-        add_candidate(match, keyframe.posture, said.posture, said.mirrored, said.confidence)
-        others = candidates.get(keyframe.index, ())[1:]
-        for other in sorted(others, key=lambda other: -other.confidence):
+        matched, frame = keyframe.matched, float(clip_frames[keyframe.index])
+        assert matched is not None
+        match = add_match(take, frame, matched.library)
+        add_candidate(match, keyframe.posture, matched.posture, matched.mirrored, matched.confidence)
+        more = candidates.get(keyframe.index, ())[1:]
+        for other in sorted(more, key=lambda other: -other.confidence):
             add_candidate(match, other.posture, other.name, other.mirrored, other.confidence)
         note_contradictions(take, frame, found.contradictions.get(keyframe.index, ()))
     if keyframes:

@@ -5,18 +5,10 @@ from bpy.types import Context, PropertyGroup, UILayout
 
 from ...core.prior.texts import COMPOSED
 from ..overlays.drawing import candidate_icon
+from ..shell import panel
 from ..shell.job_progress import job_is_running, steady_frame
 from ..shell.keyed_frames import has_frame
-from ..shell.panel import (
-    Popover,
-    RowList,
-    StepPanel,
-    draw_contradictions,
-    draw_progress,
-    draw_sentence,
-    right_end,
-    side_by_side,
-)
+from ..shell.panel import Popover, RowList, StepPanel, draw_progress, draw_sentence, right_end
 from ..shell.take_state import DOUBTFUL, TakeState
 from ..shell.takes import active_take
 from .change_match import candidate_title
@@ -69,14 +61,8 @@ class KEYMARK_PT_keyframes(StepPanel, bpy.types.Panel):
     bl_label = "Poses"
     step = "keyframes"
     options = "KEYMARK_PT_keyframes_options"
-
-    @classmethod
-    def summary(cls, state: TakeState) -> str:
-        return f"{len(state.keyed.all)} keyed" if state.take.keyframe_action else ""
-
-    @classmethod
-    def action(cls, state: TakeState) -> tuple[str, str]:
-        return ("keymark.pose_all", "Pose All") if state.take.keyframe_action is None else ("", "")
+    summary = staticmethod(lambda s: f"{len(s.keyed.all)} keyed" if s.take.keyframe_action else "")
+    action = staticmethod(lambda s: ("", "") if s.take.keyframe_action else ("keymark.pose_all", "Pose All"))
 
     def draw_step(self, context: Context, body: UILayout, state: TakeState) -> None:
         take = state.take
@@ -91,11 +77,18 @@ class KEYMARK_PT_keyframes(StepPanel, bpy.types.Panel):
         else:
             _draw_proposed(column, context, state)
         _draw_here(column, context, state)
-        _draw_corrections(column, context, take)
+        correcting = column.column(align=True)
+        correcting.operator(DRAGGING, icon="EMPTY_ARROWS", depress=job_is_running(context, DRAGGING))
+        row = panel.side_by_side(correcting)
+        posing = take.armature is not None and take.armature.mode == "POSE"
+        limbs = selected_limbs(take) if posing else []
+        flip = f"Flip {LIMBS[limbs[0]].title()}" if len(limbs) == 1 else "Flip Depth"
+        row.operator("keymark.flip_depth", text=flip, translate=False, icon="MOD_MIRROR")
+        row.operator_menu_enum("keymark.turn_performer", "facing", icon="FILE_REFRESH")
+        correcting.operator_menu_enum("keymark.copy_neighbor", "direction", icon="COPYDOWN")
 
 
 def _draw_found(column: UILayout, context: Context, state: TakeState) -> None:
-    """Draw found keyframes, the way to the next doubtful one, and the choice among a frame's candidates."""
     matching = state.take.matching
     source = (matching, "matches", matching, "shown_match")
     column.template_list("KEYMARK_UL_matches", "", *source, rows=3, maxrows=3)
@@ -124,16 +117,11 @@ def _draw_found(column: UILayout, context: Context, state: TakeState) -> None:
 
 
 def _draw_side_view(row: UILayout, context: Context) -> None:
-    """Draw the button that looks at candidates from the side."""
     aside = context.space_data.region_3d.view_perspective != "CAMERA"
     row.operator("keymark.look_from_side", text="", icon="AXIS_SIDE", depress=aside)
 
 
 def _draw_candidates(layout: UILayout, match: PropertyGroup, operator: str, is_shown: bool = True) -> None:
-    """Draw a row for each of a frame's likeliest candidates; its button calls an operator with its index.
-
-    None is marked where the frame was posed in another way.
-    """
     for index, candidate in enumerate(match.candidates[:MOST_SHOWN]):
         row = layout.row(align=True)
         button = row.operator(
@@ -150,7 +138,6 @@ def _draw_candidates(layout: UILayout, match: PropertyGroup, operator: str, is_s
 
 
 def _draw_proposed(column: UILayout, context: Context, state: TakeState) -> None:
-    """Draw how many of the proposed frames are posed and the way to the next, or the button that proposes."""
     proposed, left, posed = len(state.proposed), len(state.unposed), len(state.posed)
     if not proposed:
         _draw_propose(column, context)
@@ -166,13 +153,11 @@ def _draw_proposed(column: UILayout, context: Context, state: TakeState) -> None
 
 
 def _draw_propose(layout: UILayout, context: Context) -> None:
-    """Draw the button that proposes frames, or the progress of its job."""
     if not draw_progress(layout, context, "keymark.propose_keyframes"):
         layout.operator("keymark.propose_keyframes", icon="MARKER_HLT")
 
 
 def _draw_here(column: UILayout, context: Context, state: TakeState) -> None:
-    """Draw what this frame holds, what contradicts in it, and how its pose is fitted and stored."""
     frame = round(steady_frame(context))
     if state.shown_action in state.kept_actions and not state.shows_keyframes:
         column.operator("keymark.show_action", text="Show Keyframes", icon="ERROR").which = "KEYFRAMES"
@@ -185,10 +170,10 @@ def _draw_here(column: UILayout, context: Context, state: TakeState) -> None:
         column.label(text=f"Frame {frame} is proposed, not posed yet", icon="KEYFRAME", translate=False)
     else:
         column.label(text=f"Frame {frame} is not posed", icon="DOT", translate=False)
-    draw_contradictions(column, context, state)
+    panel.draw_contradictions(column, context, state)
     posing = column.column(align=True)
     if not draw_progress(posing, context, "keymark.fit_pose"):
-        row = side_by_side(posing)
+        row = panel.side_by_side(posing)
         row.operator("keymark.fit_pose", text="Fit Pose", icon="ARMATURE_DATA").start = "KEYFRAMES"
         row.operator("keymark.store_keyframe", icon="KEY_HLT")
     offered = state.offered_at(context.scene.frame_current_final)
@@ -197,20 +182,6 @@ def _draw_here(column: UILayout, context: Context, state: TakeState) -> None:
         head.label(text=f"Frame {offered.frame:g} may show", translate=False)
         _draw_side_view(head, context)
         _draw_candidates(posing, offered, "keymark.show_offered")
-
-
-def _draw_corrections(column: UILayout, context: Context, take: PropertyGroup) -> None:
-    """Draw dragging joints, flipping depth, turning the performer, and copying a neighbor."""
-    correcting = column.column(align=True)
-    running = job_is_running(context, DRAGGING)
-    correcting.operator(DRAGGING, icon="EMPTY_ARROWS", depress=running)
-    row = side_by_side(correcting)
-    posing = take.armature is not None and take.armature.mode == "POSE"
-    limbs = selected_limbs(take) if posing else []
-    flip = f"Flip {LIMBS[limbs[0]].title()}" if len(limbs) == 1 else "Flip Depth"
-    row.operator("keymark.flip_depth", text=flip, translate=False, icon="MOD_MIRROR")
-    row.operator_menu_enum("keymark.turn_performer", "facing", icon="FILE_REFRESH")
-    correcting.operator_menu_enum("keymark.copy_neighbor", "direction", icon="COPYDOWN")
 
 
 class KEYMARK_PT_keyframes_options(Popover, bpy.types.Panel):

@@ -11,18 +11,9 @@ from ...core.arrays import Array
 from ...core.errors import InputError
 from ...core.progress import Job, stretch, within
 from ..bridge.scene_frames import shown_index
-from ..shell.base_operator import (
-    BaseOperator,
-    Unchanged,
-    actor,
-    all_colors,
-    camera,
-    footage,
-    idle,
-    of_take,
-    points_to_follow,
-    warn,
-)
+from ..library.registry import named_libraries
+from ..shell import need
+from ..shell.base_operator import BaseOperator, Unchanged, warn
 from ..shell.fields import Switch, Text
 from ..shell.job_operator import JobOperator
 from ..shell.notes import give_notices
@@ -30,7 +21,7 @@ from ..shell.results import keep_reading, keep_speed
 from ..shell.take_state import TakeState
 from ..shell.takes import active_take, find_take, take_by_identifier
 from .found_properties import FloorSettings, directions, known_matches, neighbor
-from .scene_session import READ, SceneSession, clip_session, go_on, read_session
+from .scene_session import READ, SceneSession, go_on, read_session
 
 if TYPE_CHECKING:
     from ...core.markers.reading import Reading
@@ -52,7 +43,7 @@ class KEYMARK_OT_propose_keyframes(JobOperator, bpy.types.Operator):
     """Follow the performer through the footage and propose the frames that are best posed"""
 
     bl_label = "Propose Keyframes"
-    requirements = (footage, camera, all_colors, idle)
+    requirements = (need.footage, need.camera, need.all_colors, need.idle)
 
     def start(self, scene: Scene) -> Job[Outcome]:
         from ...core.markers.reading import Reading
@@ -61,7 +52,7 @@ class KEYMARK_OT_propose_keyframes(JobOperator, bpy.types.Operator):
 
         take = active_take(scene)
         count = take.keyframe_count or None
-        made = yield from stretch(clip_session(scene, take), 0.0, READ)
+        made = yield from stretch(read_session(scene, take), 0.0, READ)
         made = yield from stretch(go_on(made, "read"), 0.0, 0.9)
         known, reading = made.session.inputs.take, made.session[Reading]
         keypoints = performer_keypoints(known, reading.tracks)
@@ -84,7 +75,7 @@ class KEYMARK_OT_propose_keyframes(JobOperator, bpy.types.Operator):
         give_notices(take, "keyframes", "proposals", notes)
 
 
-proposals = of_take(lambda state: state.proposed, "Propose keyframes first")
+proposals = need.of_take(lambda state: state.proposed, "Propose keyframes first")
 
 
 class KEYMARK_OT_jump_to_proposal(BaseOperator, bpy.types.Operator):
@@ -138,7 +129,7 @@ class KEYMARK_OT_pose_all(FloorSettings, JobOperator, bpy.types.Operator):
     """Find the actor's pose in every proposed frame, and key it as found; what you posed or chose stays"""
 
     bl_label = "Pose All"
-    requirements = (footage, camera, actor, points_to_follow, all_colors, idle)
+    requirements = (need.footage, need.camera, need.actor, need.points_to_follow, need.all_colors, need.idle)
 
     library: Text(
         "Library",
@@ -152,8 +143,6 @@ class KEYMARK_OT_pose_all(FloorSettings, JobOperator, bpy.types.Operator):
 
     def start(self, scene: Scene) -> Job[SceneSession]:
         """Go on with the active take until its poses are found: in proposed frames, or else the best ones."""
-        from ..library.registry_files import named_libraries
-
         take = active_take(scene)
         state = TakeState(take)
         reading = read_session(

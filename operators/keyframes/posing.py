@@ -6,25 +6,26 @@ from typing import TYPE_CHECKING
 
 import bpy
 import numpy as np
-from bpy.types import Context, Event, PropertyGroup, Scene
+from bpy.types import Context, Event, Operator, PropertyGroup, Scene
 
+from ...core.body.kinematics import Body
+from ...core.body.posture import Posture
 from ...core.errors import KeymarkError
 from ...core.prior.texts import COMPOSED
 from ...core.progress import run
 from ..bridge.actions import assign_action
+from ..bridge.armature import read_body
+from ..bridge.keyframes import NOTICEABLE_M, store_pose
+from ..bridge.pose import read_posture, write_posture
 from ..bridge.scene_frames import at_scene_frame, scene_frames, showing_action
 from ..follow.evidence import scene_evidence
 from ..follow.marker_search import marker_styles
 from ..follow.properties import ignored_regions
-from ..shell.base_operator import BaseOperator, actor, camera, footage, idle, points_to_follow, warn
+from ..library.registry import named_libraries
+from ..shell import keyed_frames, need
+from ..shell.base_operator import BaseOperator, operator, warn
 from ..shell.fields import Choice
-from ..shell.keyed_frames import (
-    SAME_FRAME,
-    has_frame,
-    new_keyframe_action,
-    show_keyframes,
-    straighten_unposed,
-)
+from ..shell.keyed_frames import has_frame, new_keyframe_action, show_keyframes, straighten_unposed
 from ..shell.notes import give_notices, note_contradictions
 from ..shell.results import MADE, reading_of
 from ..shell.take_state import TakeState
@@ -33,8 +34,6 @@ from .found_properties import known_matches
 from .scene_session import read_session
 
 if TYPE_CHECKING:
-    from ...core.body.kinematics import Body
-    from ...core.body.posture import Posture
     from ...core.markers.reading import Reading
 
 
@@ -65,7 +64,6 @@ def _pose_anew(scene: Scene, settings: PropertyGroup, reading: "Reading", frame:
     from ...core.poses.clip import pose_clip
     from ...core.poses.clip_input import section_around, take_around
     from ...core.session.stages import seen_in
-    from ..library.registry_files import named_libraries
     from .found_result import write_found
 
     known = run(read_session(scene, settings, known_matches(settings, by_hand=False))).session.inputs.take
@@ -105,19 +103,20 @@ def _waiting(context: Context) -> Iterator[None]:
 def note_corrected(take: PropertyGroup, frame: float, in_depth: bool) -> None:
     """Remember that the pose shown at a frame without a key was corrected, and whether in depth as well."""
     matching = take.matching
-    before = matching.corrected_in_depth and abs(matching.corrected_frame - frame) < SAME_FRAME
+    before = matching.corrected_in_depth and abs(matching.corrected_frame - frame) < keyed_frames.SAME_FRAME
     matching.corrected_frame, matching.corrected_in_depth = frame, in_depth or before
 
 
-def _depth_found(take: PropertyGroup, body: "Body", posture: "Posture", frame: float) -> bool:
+def _depth_found(take: PropertyGroup, body: Body, posture: Posture, frame: float) -> bool:
     """Whether the pose shown has the depth that was found: corrected in the picture alone, or as keyed."""
-    from ..bridge.pose import read_posture
-
     if take.keyframe_action is None or not TakeState(take).depth_is_found(frame):
         return False
     if not has_frame(TakeState(take).keyed.all, frame):
         matching = take.matching
-        return abs(matching.corrected_frame - frame) < SAME_FRAME and not matching.corrected_in_depth
+        return (
+            abs(matching.corrected_frame - frame) < keyed_frames.SAME_FRAME
+            and not matching.corrected_in_depth
+        )
     with showing_action(take.armature, take.keyframe_action), at_scene_frame(take.id_data) as go_to:
         go_to(frame)
         keyed = read_posture(take.armature, body).posture
@@ -125,13 +124,7 @@ def _depth_found(take: PropertyGroup, body: "Body", posture: "Posture", frame: f
 
 
 def key_pose(context: Context, take: PropertyGroup, depth_found: bool = False) -> int:
-    """Key the actor's pose as it stands, in the take's keyframe Action at the current frame.
-
-    `depth_found`: whether it was put right in the picture alone, which tells its neighbors nothing: whether
-    they lean as it does is as open as before. Returns how many found keyframes around it were posed anew.
-    """
-    from ..bridge.keyframes import store_pose
-
+    """Key the pose, as deep as found or posed; how many found keyframes around it were posed anew."""
     frame = context.scene.frame_current_final
     store_pose(take.armature, take.keyframe_action, frame, depth_found)
     assign_action(take.armature, take.keyframe_action)
@@ -140,51 +133,43 @@ def key_pose(context: Context, take: PropertyGroup, depth_found: bool = False) -
     return 0 if depth_found else improve_neighbors(context, take, frame)
 
 
-class KEYMARK_OT_store_keyframe(BaseOperator, bpy.types.Operator):
+@operator("Store Keyframe", need.actor, need.idle)
+def store_keyframe(operator: Operator, context: Context, take: PropertyGroup) -> None:
     """Key the actor's whole pose at the current frame in the keyframe Action, and show that Action"""
-
-    bl_label = "Store Keyframe"
-    requirements = (actor, idle)
-
-    def run(self, context: Context) -> None:
-        from ..bridge.armature import read_body
-        from ..bridge.keyframes import NOTICEABLE_M
-        from ..bridge.pose import read_posture
-
-        take, frame = active_take(context.scene), context.scene.frame_current_final
-        body = read_body(take.armature)
-        read = read_posture(take.armature, body)
-        if take.keyframe_action is None:
-            take.keyframe_action = new_keyframe_action(take.armature)
-        switched = not TakeState(take).shows_keyframes
-        straighten_unposed(take)
-        was_found = frame in known_matches(take)
-        depth_found = _depth_found(take, body, read.posture, frame)
-        about = f"pose at {frame:g}"
-        give_notices(take, "keyframes", about)
-        improved = key_pose(context, take, depth_found)
-        if read.furthest_m > NOTICEABLE_M:
-            sentence = (
-                f"Stored at frame {frame:g}; the pose goes {1000.0 * read.furthest_m:.0f} mm beyond "
-                "what the skeleton can do, and its nearest posture will be used"
-            )
-            give_notices(take, "keyframes", about, (warn(self, sentence),), frame=frame)
-            return
-        also = ""
-        if improved:
-            also = f"; {improved} found ones around it were posed anew"
-        elif was_found:
-            also = "; it was found, and counts as posed now"
-        elif switched:
-            also = "; the actor shows the keyframes now"
-        self.report({"INFO"}, f"Stored a keyframe at frame {frame:g}{also}")
+    frame = context.scene.frame_current_final
+    body = read_body(take.armature)
+    read = read_posture(take.armature, body)
+    if take.keyframe_action is None:
+        take.keyframe_action = new_keyframe_action(take.armature)
+    switched = not TakeState(take).shows_keyframes
+    straighten_unposed(take)
+    was_found = frame in known_matches(take)
+    depth_found = _depth_found(take, body, read.posture, frame)
+    about = f"pose at {frame:g}"
+    give_notices(take, "keyframes", about)
+    improved = key_pose(context, take, depth_found)
+    if read.furthest_m > NOTICEABLE_M:
+        sentence = (
+            f"Stored at frame {frame:g}; the pose goes {1000.0 * read.furthest_m:.0f} mm beyond "
+            "what the skeleton can do, and its nearest posture will be used"
+        )
+        give_notices(take, "keyframes", about, (warn(operator, sentence),), frame=frame)
+        return
+    also = ""
+    if improved:
+        also = f"; {improved} found ones around it were posed anew"
+    elif was_found:
+        also = "; it was found, and counts as posed now"
+    elif switched:
+        also = "; the actor shows the keyframes now"
+    operator.report({"INFO"}, f"Stored a keyframe at frame {frame:g}{also}")
 
 
 class KEYMARK_OT_fit_pose(BaseOperator, bpy.types.Operator):
     """Pose the actor so that markers and keypoints lie where this frame has them; you decide what is keyed"""
 
     bl_label = "Fit Pose to Footage"
-    requirements = (footage, camera, actor, points_to_follow, idle)
+    requirements = (need.footage, need.camera, need.actor, need.points_to_follow, need.idle)
 
     start: Choice(
         "Start From",
@@ -217,14 +202,12 @@ class KEYMARK_OT_fit_pose(BaseOperator, bpy.types.Operator):
         return finished
 
     def run(self, context: Context) -> None:
-        from ..bridge.pose import write_posture
         from ..bridge.take_from_scene import fit_to_frame, frame_in_footage
-        from ..library.registry_files import all_libraries
         from .found_result import add_candidate
 
         scene, take = context.scene, active_take(context.scene)
         frame = frame_in_footage(footage_of(scene, take), scene_evidence(take), reading_of(take))
-        libraries = () if self.start == "POSE" else all_libraries()
+        libraries = () if self.start == "POSE" else named_libraries("")
         known, floor_m = known_matches(take), take.matching.known_floor_m
         actor_and_keys = take.armature, take.keyframe_action
         found = fit_to_frame(frame, *actor_and_keys, self.start, known, libraries, floor_m)

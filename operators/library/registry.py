@@ -1,9 +1,11 @@
-"""Registry of keyframe libraries, shipped and the user's own, as lists show them.
+"""Registry of keyframe libraries, shipped and the user's own: their files, and how lists show them.
 
 Folders are read when the sidebar is first drawn, and by operators that change files.
 """
 
+from collections.abc import Iterable, Sequence
 from contextlib import suppress
+from functools import lru_cache
 from pathlib import Path
 from zlib import crc32
 
@@ -11,6 +13,11 @@ import bpy
 from bpy.app import timers
 from bpy.types import Context, PropertyGroup
 
+from ...core.errors import InputError
+from ...core.prior import registry as prior_registry
+from ...core.prior.library import Library, write_library
+from ...core.prior.registry import find_library, identifier_of, registered_libraries
+from ...core.prior.texts import EVERY_LIBRARY
 from ..shell.fields import SKIP_SAVE, Entries, Group, Integer, Switch, Text
 from ..shell.results import EXTENSION
 from ..shell.takes import redraw_sidebars
@@ -31,9 +38,47 @@ def own_folder() -> Path:
 
 def folders() -> list[Path]:
     """Folders of libraries; of two libraries with the same identifier that of the first folder counts."""
-    from ...core.prior.registry import SHIPPED
+    return [own_folder(), prior_registry.SHIPPED]
 
-    return [own_folder(), SHIPPED]
+
+def load_registered(identifier: str) -> Library:
+    """The registered library of an identifier; an InputError without a usable file of it."""
+    return find_library(identifier, folders())
+
+
+def named_libraries(name: str) -> Sequence[Library]:
+    """All libraries where `EVERY_LIBRARY` or nothing is named, else that of an identifier, title or file."""
+    return all_libraries() if name in ("", EVERY_LIBRARY) else [load_registered(name)]
+
+
+def all_libraries() -> Sequence[Library]:
+    """All registered libraries, the same objects until a file changes: what is made of them stays known."""
+    files = sorted(file for folder in folders() if folder.is_dir() for file in folder.glob("*.json"))
+    stats = [(file, file.stat()) for file in files]
+    return _libraries(tuple((file, stat.st_mtime_ns, stat.st_size) for file, stat in stats))
+
+
+@lru_cache(maxsize=1)
+def _libraries(_files: tuple[tuple[Path, int, int], ...]) -> Sequence[Library]:
+    return prior_registry.find_libraries(EVERY_LIBRARY, folders())
+
+
+def write_to_registry(libraries: Iterable[Library]) -> None:
+    """Write libraries into the user's folder; InputError where that would lose a file of another content."""
+    folder = own_folder()
+    there = registered_libraries([folder])
+    files = []
+    for library in libraries:  # people may have put files there under any name
+        name = library.identifier
+        own = [entry.path for entry in there if entry.content and identifier_of(entry) == name]
+        path = own[0] if own else prior_registry.library_path(folder, name)
+        other = next((entry for entry in there if entry.path == path and path not in own), None)
+        if other is not None:
+            held = f"the library '{other.title}'" if other.content else "something that is no library"
+            raise InputError(f"{path}: holds {held}, which would be lost; give that file another name first")
+        files.append((path, library))
+    for path, library in files:
+        write_library(path, library)
 
 
 def chosen_entry(context: Context) -> PropertyGroup | None:
@@ -66,8 +111,6 @@ def library_items(_properties: object, context: Context | None) -> list[Item]:
 
 def refresh(choose: str = "") -> None:
     """Read the folders, fill the list, and choose the library of an identifier, else the same as before."""
-    from ...core.prior.registry import identifier_of, registered_libraries
-
     listed, own = bpy.context.window_manager.keymark_shelf, own_folder()
     wanted = choose or chosen_identifier(bpy.context)
     listed.libraries.clear()

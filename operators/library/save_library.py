@@ -1,29 +1,22 @@
 """Keyframe libraries loaded, saved as files, edited as pose assets, and learned."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import bpy
-from bpy.types import AnyType, Context, Event, Menu
+from bpy.types import AnyType, Context, Event, Menu, Operator, PropertyGroup
 
 from ...core.errors import InputError
+from ...core.prior.learning import LibraryMetadata, learn_library
+from ...core.prior.library import Library, library_digest, write_library
+from ...core.prior.registry import identifier_of, registered_libraries
 from ...core.prior.texts import identifier_from
-from ..shell.base_operator import (
-    BaseOperator,
-    actor,
-    browse,
-    chosen_file,
-    idle,
-    motion,
-    registered_library,
-    warn_if_outdated,
-)
-from ..shell.fields import HIDDEN, SKIP_SAVE, Choice, Integer, Switch, Text
+from ..bridge.asset_catalogs import asset_root, catalog_file, ensure_catalog
+from ..bridge.rig import shown_motion
+from ..shell import need
+from ..shell.base_operator import BaseOperator, browse, chosen_file, operator, warn_if_outdated
+from ..shell.fields import HIDDEN, SKIP_SAVE, Choice, File, Integer, Switch, Text
 from ..shell.takes import active_take, find_take, refresh_asset_browsers
-from .registry import chosen_identifier, folders, refresh
-
-if TYPE_CHECKING:
-    from ...core.prior.library import Library
+from .registry import chosen_identifier, folders, load_registered, refresh, write_to_registry
 
 
 class KEYMARK_OT_import_library(BaseOperator, bpy.types.Operator):
@@ -31,17 +24,10 @@ class KEYMARK_OT_import_library(BaseOperator, bpy.types.Operator):
 
     bl_label = "Load Library"
     bl_options = {"REGISTER"}
-    requirements = (idle,)
+    requirements = (need.idle,)
 
-    filepath: Text(
-        "File Path",
-        "A keyframe library: .json, or .blend with pose assets of one",
-        subtype="FILE_PATH",
-        options=SKIP_SAVE,
-    )
-    replace: Switch(
-        "Replace", "Replace another library of the same identifier that is at hand", options=SKIP_SAVE
-    )
+    filepath: File("A keyframe library: .json, or .blend with pose assets of one")
+    replace: Switch("Replace", "Replace another library of the same identifier", options=SKIP_SAVE)
     filter_glob: Text(default="*.json;*.blend", options=HIDDEN)
     filter_folder: Switch(default=True, options=HIDDEN)
 
@@ -50,10 +36,7 @@ class KEYMARK_OT_import_library(BaseOperator, bpy.types.Operator):
 
     def run(self, context: Context) -> None:
         """Read the whole file first, then write its libraries into the user's folder."""
-        from ...core.prior.library import library_digest
-        from ...core.prior.registry import registered_libraries
         from ..bridge.library import read_libraries
-        from .registry_files import write_to_registry
 
         libraries = read_libraries(chosen_file(self, "a keyframe library, .json or .blend"))
         found = [entry.content for entry in registered_libraries(folders())]
@@ -80,34 +63,25 @@ def _draw_import(menu: Menu, context: Context) -> None:
     menu.layout.operator(KEYMARK_OT_import_library.bl_idname, text="Keymark Keyframe Library (.json/.blend)")
 
 
-class KEYMARK_OT_refresh_shelf(BaseOperator, bpy.types.Operator):
+@operator("Refresh Libraries", need.idle, undo=False)
+def refresh_shelf(operator: Operator, context: Context, take: PropertyGroup) -> None:
     """Read the folder of your libraries again, after other programs have changed its files"""
-
-    bl_label = "Refresh Libraries"
-    bl_options = {"REGISTER"}
-    requirements = (idle,)
-
-    def run(self, context: Context) -> None:
-        refresh()
-        count = len(context.window_manager.keymark_shelf.libraries)
-        self.report({"INFO"}, f"{count} keyframe libraries are at hand")
+    refresh()
+    count = len(context.window_manager.keymark_shelf.libraries)
+    operator.report({"INFO"}, f"{count} keyframe libraries are at hand")
 
 
 class KEYMARK_OT_edit_library(BaseOperator, bpy.types.Operator):
     """Bring a library into this file as pose assets: to apply, to blend, to change, and to save again"""
 
     bl_label = "Edit as Pose Assets"
-    requirements = (registered_library, idle)
+    requirements = (need.registered_library, need.idle)
 
-    library: Text(
-        "Library", "Identifier of a library at hand; empty: the one chosen in the list", options=SKIP_SAVE
-    )
+    library: Text("Library", "Identifier of a library; empty: the one chosen in the list", options=SKIP_SAVE)
 
     def run(self, context: Context) -> None:
         """Add an Action for each posture; a saved file's catalogs are named beside it."""
-        from ..bridge.asset_catalogs import catalog_file, ensure_catalog
         from ..bridge.library import add_assets, assets_by_library, catalog_of
-        from .registry_files import load_registered
 
         library = load_registered(self.library or chosen_identifier(context))
         if library.identifier in assets_by_library(bpy.data.actions):
@@ -122,9 +96,6 @@ class KEYMARK_OT_edit_library(BaseOperator, bpy.types.Operator):
 
 
 MENUS = {"TOPBAR_MT_file_import": _draw_import}
-
-
-# --- Save a keyframe library to a file, or learn one from a take's motion
 
 
 USUAL = (
@@ -172,7 +143,7 @@ class KEYMARK_OT_export_library(Licensed, BaseOperator, bpy.types.Operator):
 
     bl_label = "Save Library"
     bl_options = {"REGISTER"}
-    requirements = (idle,)
+    requirements = (need.idle,)
 
     source: Choice("Postures", "Postures of the library", items=SOURCES, options=SKIP_SAVE)
     library: Text(
@@ -213,8 +184,6 @@ class KEYMARK_OT_export_library(Licensed, BaseOperator, bpy.types.Operator):
                 column.prop(self, name)
 
     def run(self, context: Context) -> None:
-        from ...core.prior.library import write_library
-        from ..bridge.asset_catalogs import asset_root
         from ..bridge.library import write_library_blend
 
         if not self.filepath:
@@ -233,10 +202,8 @@ class KEYMARK_OT_export_library(Licensed, BaseOperator, bpy.types.Operator):
         take = find_take(context.scene)
         return self.title.strip() or (take.name if take is not None else "Postures")
 
-    def _library(self, context: Context) -> "Library":
-        from ...core.prior.learning import LibraryMetadata
+    def _library(self, context: Context) -> Library:
         from ..bridge.library import library_of_assets, library_of_keyframes
-        from .registry_files import load_registered
 
         wanted = self.library or chosen_identifier(context)
         if self.source == "LIBRARY":
@@ -255,13 +222,11 @@ class KEYMARK_OT_learn_library(Licensed, BaseOperator, bpy.types.Operator):
     """Make a keyframe library of the motion, so that the next take of its kind needs fewer keyframes"""
 
     bl_label = "Library from Motion"
-    requirements = (actor, motion, idle)
+    requirements = (need.actor, need.motion, need.idle)
 
     title: Text("Title", "Title of the library; by default the take's name")
     author: Text("Author", "Author of the library")
-    count: Integer(
-        "Postures", "Number of postures in the library; 0 for 10 to 40, as many as differ", min=0, max=1000
-    )
+    count: Integer("Postures", "How many postures; 0 for 10 to 40, as many as differ", min=0, max=1000)
     learned_as: Text(
         "Learned As",
         "Identifier that the library was given, by which learning again replaces it",
@@ -285,10 +250,7 @@ class KEYMARK_OT_learn_library(Licensed, BaseOperator, bpy.types.Operator):
 
     def run(self, context: Context) -> None:
         """Learn the library, and write it into the user's folder."""
-        from ...core.prior.learning import LibraryMetadata
-        from ...core.prior.registry import identifier_of, registered_libraries
-        from ..bridge.library import library_from_action
-        from .registry_files import write_to_registry
+        from ..bridge.library import checked
 
         take = active_take(context.scene)
         title = self.title.strip() or take.name
@@ -297,7 +259,8 @@ class KEYMARK_OT_learn_library(Licensed, BaseOperator, bpy.types.Operator):
         author, terms = self.author.strip() or "Unknown", self.license.strip()
         about = LibraryMetadata(title, author, terms, identifier)
         action = take.finish.action or take.motion_action
-        library = library_from_action(context.scene, take.armature, action, about, self.count or None)
+        shown = shown_motion(context.scene, take.armature, action)
+        library = checked(learn_library(shown.body, shown.posture, shown.time_s, about, self.count or None))
         self.learned_as = library.identifier
         write_to_registry([library])
         refresh(library.identifier)

@@ -220,18 +220,15 @@ Item = Stroke | Fill | Label | Picture
 
 
 def merged(items: Iterable[Item]) -> list[Item]:
-    """Items to draw, the first at the bottom, with alike neighbors as one: a draw call each takes time.
-
-    Lines of one thickness are alike, and polygons of equally many corners.
-    """
+    """Items to draw, neighbors of one thickness or count of corners as one: a draw call takes time."""
     done: list[Item] = []
     for _, group in groupby(items, key=_kind):
-        first, *others = group
-        if not others or isinstance(first, Label | Picture):
-            done += [first, *others]
+        first, *more = group
+        if not more or isinstance(first, Label | Picture):
+            done += [first, *more]
             continue
         field = "segments" if isinstance(first, Stroke) else "corners"
-        parts = [(getattr(item, field), getattr(item, "color", None)) for item in (first, *others)]
+        parts = [(getattr(item, field), getattr(item, "color", None)) for item in (first, *more)]
         colors = [np.broadcast_to(np.asarray(color, dtype=np.float64), (len(at), 4)) for at, color in parts]
         together = {field: np.concatenate([at for at, _ in parts]), "color": np.concatenate(colors)}
         done.append(replace(first, **together))

@@ -45,10 +45,7 @@ Row = tuple[Sample, str]
 
 @lru_cache(maxsize=16)
 def legend(rows: tuple[Row, ...], x: float, y: float, style: Style) -> tuple[Item, ...]:
-    """A legend on a dark background, which sets it off from bright footage.
-
-    Rows are from the top down; x is the left end of the samples, y the upper end of the first row.
-    """
+    """A legend of rows on a dark ground; x is the left end of samples, y the upper end of the first."""
     if not rows:
         return ()
     strokes: list[Stroke] = []
@@ -99,10 +96,7 @@ def _sample(figure: str, color: Color, x: float, y: float, style: Style) -> list
 
 
 def corner(area: Area, region: Region, scale: float) -> tuple[float, float]:
-    """The top left corner of a region's part that no toolbar, header or name of the view covers [region px].
-
-    Below, where a legend would lie as well, the performer's feet are.
-    """
+    """The top left corner of what nothing covers in a region [px]; below, the performer's feet would be."""
     left, top = 0.0, float(region.height)
     for other in area.regions:
         covers = other.width > 1 and other.height > 1 and other != region

@@ -11,16 +11,9 @@ from bpy.types import Context, Depsgraph, Scene
 
 from ...core.arrays import Image, SingleArray
 from ...core.errors import KeymarkError
+from ..follow import mask_previews
 from ..follow.marker_tools import Brush
-from ..follow.mask_previews import (
-    ColorMask,
-    Preview,
-    clear_previews,
-    ignored_mask,
-    is_of_frame,
-    preview_of,
-    update_masks,
-)
+from ..follow.mask_previews import ColorMask, Preview, clear_previews
 from ..shell.footage_view import FootageView, footage_view, shown_request
 from ..shell.takes import find_take
 from .drawing import INK, Item, Label, Picture, Stroke, text_size, texture, ui_scale
@@ -40,8 +33,8 @@ def draw(context: Context) -> list[Item]:
     take = find_take(context.scene)
     if take is None or not context.window_manager.keymark_show_masks:
         return []
-    preview = preview_of(take)
-    if preview is None or not preview.masks or not is_of_frame(preview, context.scene):
+    preview = mask_previews.preview_of(take)
+    if preview is None or not preview.masks or not mask_previews.is_of_frame(preview, context.scene):
         return []
     view = footage_view(context.scene, take, context.area, context.region)
     return [] if view is None else mask_items(preview, view)
@@ -71,7 +64,6 @@ def tinted(masks: Sequence[ColorMask], darkening: float = DARKENING) -> SingleAr
 
 
 def _texture(what: str, made_of: object, make: Callable[[], SingleArray]) -> gpu.types.GPUTexture:
-    """The texture of a picture, the last one of which is kept."""
     if what not in _textures or _textures[what][0] is not made_of:
         _textures[what] = made_of, texture(make())
     return _textures[what][1]
@@ -88,7 +80,6 @@ def over_footage(drawn: gpu.types.GPUTexture, view: FootageView) -> Picture:
 
 
 def _names(masks: Sequence[ColorMask], view: FootageView) -> list[Label]:
-    """Each mask's name above its larger outlines, higher where another name is."""
     labels: list[Label] = []
     boxes: list[tuple[float, float, float, float]] = []
     gap = 4.0 * ui_scale()
@@ -123,8 +114,10 @@ def draw_ignored(context: Context) -> list[Item]:
     if take is None or (brush is None and not context.window_manager.keymark_show_masks):
         return []
     view = footage_view(context.scene, take, context.area, context.region)
-    mask = None if view is None else ignored_mask(take, () if brush is None else brush.regions())
-    if view is None or mask is None:
+    if view is None:
+        return []
+    mask = mask_previews.ignored_mask(take, () if brush is None else brush.regions())
+    if mask is None:
         return []
     return [over_footage(_texture("ignored", mask, lambda: hatched(mask)), view)]
 
@@ -159,7 +152,7 @@ def _frame_changed(scene: Scene, _depsgraph: Depsgraph | None = None) -> None:
         return  # `draw` shows none that are of another frame
     try:
         started = monotonic()
-        update_masks(scene)
+        mask_previews.update_masks(scene)
         _cost_s = monotonic() - started
     except KeymarkError:
         clear_previews()  # the clip is missing, which the operator that shows masks reports

@@ -58,9 +58,7 @@ def paths(
         ahead = dashes(path[frames >= index], style.dash * style.scale, style.gap * style.scale)
         items.append(Stroke(segments(path[frames <= index]), color, style.width, style.halo))
         items.append(Stroke(ahead, color, style.width, style.halo))
-    items.append(
-        Fill(circles(dots, style.size(style.dot + 0.5 * style.width), 8), style.color(drawing.MIDDLE))
-    )
+    items.append(Fill(circles(dots, style.size(style.dot + style.width / 2), 8), style.color(drawing.MIDDLE)))
     # All edges, then all diamonds: alike neighbors are drawn in one call.
     corners = [diamonds(mark, style.size(style.diamond)) for mark in marks]
     colors = [style.color(side_color(name)) for name in names]
@@ -151,11 +149,7 @@ def _outlines(corners: Array, shown: BoolArray, colors: Array, style: Style) -> 
 def skeleton(
     review: "Review", index: int, positions: Array, pixels_per_meter: Array, style: Style
 ) -> list[Item]:
-    """The body of one frame: its points (13, 2) in region pixels, and the size (13,) of a meter at each.
-
-    Lines and discs have the colors of their sides; lines of the right have a dark core. An uncertain point is
-    a ring, in a dashed circle as large as its standard deviation.
-    """
+    """The body of one frame: its points (13, 2) in region pixels, and the size (13,) of a meter at each."""
     names, sigma = review.point_names, review.sigma_m[index]
     uncertain, seen = sigma > drawing.UNCERTAIN_M, np.isfinite(positions).all(axis=-1)
     colors = np.array([style.color(side_color(name)) for name in names])
@@ -209,7 +203,6 @@ def _paths(what: Shown, view: MotionView, style: Style) -> Part:
 
 
 def _observed(what: Shown, view: MotionView, style: Style) -> Part:
-    """A solid outline of each marker's region that was found."""
     assert view.footage is not None
     hidden = [what.review.marker_names[marker] for marker in what.hidden]
     rows = [(Sample.NONE, f"Hidden: {', '.join(hidden)}")] if hidden else []
@@ -258,7 +251,6 @@ def _skeleton(what: Shown, view: MotionView, style: Style) -> Part:
 
 
 def _keypoints(what: Shown, view: MotionView, style: Style) -> Part:
-    """Those of the motion, and others that the take's sources see."""
     assert view.footage is not None
     compared, index, to_region = what.review.keypoints, what.index, view.footage.to_region
     frame = round(float(what.review.frames[index]))

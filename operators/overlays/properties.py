@@ -34,9 +34,7 @@ class KEYMARK_PG_overlays(bpy.types.PropertyGroup):
         "Show the footage and the characters alone, without actors and what is drawn of them",
         update=_only_character,
     )
-    show_observed: _switch(
-        "Observed Markers", "Outline each marker's region as it was found in the footage: a solid line"
-    )
+    show_observed: _switch("Observed Markers", "Outline each marker's region as found in the footage: solid")
     show_predicted: _switch(
         "Predicted Markers",
         "Outline each marker where the reconstructed motion puts it: a dashed line; without "

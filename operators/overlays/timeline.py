@@ -20,11 +20,7 @@ FINEST_PX = 1.5  # frames nearer than this are drawn as one
 
 
 def in_view(x: Array, values: Array, width: float, pick: np.ufunc) -> tuple[Array, Array]:
-    """Frames at rising positions (F,) that a region shows, and one on each side, with their values.
-
-    Of those too close to tell apart `pick` keeps the lowest or the highest value: a long clip then takes no
-    longer to draw.
-    """
+    """Frames at rising positions (F,) in a region, with values; of those too near, the one to `pick`."""
     first, last = np.searchsorted(x, (0.0, width))
     x, values = (each[max(0, int(first) - 1) : int(last) + 1] for each in (x, values))
     if len(x) < 2 or x[-1] - x[0] >= FINEST_PX * (len(x) - 1):
@@ -197,10 +193,7 @@ _views: LruCache[list[Item]] = LruCache(16)
 
 
 def _speed(scene: Scene, take: PropertyGroup) -> FootageSpeed | None:
-    """The speed in the footage that keyframes were proposed by; else of the motion's review or the reading.
-
-    The reading tells of markers alone.
-    """
+    """The speed that keyframes were proposed by; else of the motion's review, or of markers as read."""
     reading, review, proposed = reading_of(take), review_of(take), speed_of(take)
     if proposed is not None:
         return proposed

@@ -11,7 +11,9 @@ from ...core.arrays import Array
 from ...core.body.human import HUMAN
 from ...core.camera.camera_evidence import FloorGrid, floor_grid
 from ..bridge.actor_bones import joint_places
+from ..bridge.armature import read_body
 from ..bridge.footage import still_camera
+from ..bridge.keyframes import candidate_posture
 from ..footage.camera_view import free_box
 from ..footage.found_camera import HINTS, is_found, running, values
 from ..shell.footage_view import FootageView, WorldInRegion, footage_view, shown_request
@@ -20,11 +22,6 @@ from ..shell.take_state import TakeState
 from ..shell.takes import find_take, footage_of, redraw_footage
 from . import drawing
 from .drawing import (
-    CANDIDATE_COLORS,
-    CORE,
-    GHOST,
-    INK,
-    TALL_M,
     Color,
     Fill,
     Item,
@@ -71,7 +68,7 @@ def draw_joints(context: Context) -> list[Item]:
         seen = [[view.position(place) for place in path] for path in places]
         unseen = np.full(2, np.nan)
         before, after = (np.array([unseen if at is None else at for at in path]) for path in seen)
-        items.append(Stroke(segments(before), faded(INK, GHOST), 1.5, GHOST))
+        items.append(Stroke(segments(before), faded(drawing.INK, drawing.GHOST), 1.5, drawing.GHOST))
         items.append(Stroke(segments(after), side_color(joint), 1.5, 0.9))
         items.append(Fill(circles(after, 2.5 * scale, 8), side_color(joint)))
     for name, place in zip(HUMAN.point_names, joint_places(take.armature), strict=True):
@@ -80,7 +77,7 @@ def draw_joints(context: Context) -> list[Item]:
             continue
         hovered, color = name == handles.hovered, side_color(name)
         rim = circles(position[None], (9.0 if hovered else 6.0) * scale)
-        items.append(Fill(rim, INK if hovered else faded(color, 0.35)))
+        items.append(Fill(rim, drawing.INK if hovered else faded(color, 0.35)))
         items.append(Stroke(segments(rim, closed=True), np.array(color), width=2.0, halo=0.9))
         if hovered:
             items += _near(context, handles.keys.split("   |   ")[::-1], *position + 18.0 * scale)
@@ -187,11 +184,11 @@ def draw_request(context: Context) -> list[Item]:
         return items
     words = [request.keys]
     if view is not None and request.head is not None:
-        items.append(Stroke(np.array([[view.to_region(request.head), (x, y)]]), INK, 1.5, 0.6))
+        items.append(Stroke(np.array([[view.to_region(request.head), (x, y)]]), drawing.INK, 1.5, 0.6))
     if view is not None and request.brush_px:
         around = circles(np.zeros((1, 2)), request.brush_px, 48)
         rim = view.to_region(view.to_footage((x, y)) + around)
-        items.append(Stroke(segments(rim, closed=True), INK, 1.5, 1.0))
+        items.append(Stroke(segments(rim, closed=True), drawing.INK, 1.5, 1.0))
         y = float(rim[..., 1].max())
     else:
         words += [each for each in (request.detail, request.title) if each]
@@ -209,10 +206,7 @@ def _near(context: Context, rows: list[str], x: float, y: float) -> list[Item]:
     return items
 
 
-# --- Overlay of a candidate: a posture that a found keyframe's frame may show, as a faint figure
-
-
-_points: "LruCache[Array]" = LruCache()
+_points: LruCache[Array] = LruCache()
 """(N, 13, 3) points of a found keyframe's candidates, by what they depend on."""
 _looked_at: tuple[float, int] = (np.nan, 0)
 """Scene frame, and the candidate there whose button the mouse was over last."""
@@ -255,9 +249,6 @@ def candidate_points(armature_object: Object, match: PropertyGroup) -> Array:
     key = f"{armature_object.session_uid} {lengths} {tuple(armature_object.scale)} {places}"
 
     def found() -> Array:
-        from ..bridge.armature import read_body
-        from ..bridge.keyframes import candidate_posture
-
         body = read_body(armature_object)
         return np.stack([body.points(body.pose(candidate_posture(each))) for each in match.candidates])
 
@@ -267,20 +258,17 @@ def candidate_points(armature_object: Object, match: PropertyGroup) -> Array:
 
 
 def candidate_figure(positions: Array, candidate: int, chosen: int, settings: PropertyGroup) -> list[Item]:
-    """The figure of a candidate, with its number where it is farthest from the chosen one.
-
-    `positions` (N, 13, 2) are region pixels of all candidates' points, NaN where not seen.
-    """
+    """A candidate by the pixels (N, 13, 2) of all, numbered where it is farthest from the chosen one."""
     scale, figure = drawing.ui_scale(), positions[candidate]
     tall_px = float(np.ptp(np.nan_to_num(figure[:, 1])))
-    style = Style(settings.opacity, scale, body_scale(np.array([tall_px / TALL_M]), scale))
+    style = Style(settings.opacity, scale, body_scale(np.array([tall_px / drawing.TALL_M]), scale))
     width = style.limb * style.width * style.body_scale
-    themed = bpy.context.preferences.themes[0].collection_color[candidate % CANDIDATE_COLORS].color
-    color = style.color(faded(themed, GHOST))
+    themed = bpy.context.preferences.themes[0].collection_color[candidate % drawing.CANDIDATE_COLORS].color
+    color = style.color(faded(themed, drawing.GHOST))
     lines, sides = limb_lines(HUMAN.point_names, figure)
     items: list[Item] = [
-        Stroke(lines, color, width, GHOST * style.halo),
-        Stroke(lines[sides == "R"], style.color(CORE), style.core * width),
+        Stroke(lines, color, width, drawing.GHOST * style.halo),
+        Stroke(lines[sides == "R"], style.color(drawing.CORE), style.core * width),
     ]
     apart = np.nan_to_num(np.linalg.norm(figure - positions[chosen], axis=-1), nan=-1.0)
     if apart.max() >= 0.0:

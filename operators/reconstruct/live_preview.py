@@ -57,10 +57,7 @@ class LivePreview:
         self._restore()
 
     def _restore(self, *_: object) -> None:
-        """Undo the preview; the next one begins anew.
-
-        As a handler it must not remove itself, or Blender would skip the next handler.
-        """
+        """Undo the preview; as a handler it must not remove itself, or Blender would skip the next one."""
         changes, self._changes = self._changes, None
         if changes is not None:
             # Undo, or another file, has restored the scene already.

@@ -15,15 +15,8 @@ class KEYMARK_PT_reconstruct(StepPanel, bpy.types.Panel):
     bl_label = "Motion"
     step = "reconstruct"
     options = "KEYMARK_PT_reconstruct_options"
-
-    @classmethod
-    def summary(cls, state: TakeState) -> str:
-        count = len(state.take.review.weak_frames)
-        return f"{count} weak" if count else ""
-
-    @classmethod
-    def action(cls, state: TakeState) -> tuple[str, str]:
-        return "keymark.reconstruct", "Reconstruct"
+    summary = staticmethod(lambda s: f"{count} weak" if (count := len(s.take.review.weak_frames)) else "")
+    action = staticmethod(lambda _: ("keymark.reconstruct", "Reconstruct"))
 
     def draw_step(self, context: Context, body: UILayout, state: TakeState) -> None:
         take = state.take

@@ -6,30 +6,19 @@ import bpy
 from bpy.types import Context, Scene
 
 from ...core.errors import InputError
-from ...core.progress import stretch
+from ...core.progress import Job, Progress, stretch
 from ..bridge.actions import assign_action
 from ..keyframes.found_properties import known_matches
-from ..keyframes.scene_session import READ, go_on, read_session
-from ..shell.base_operator import (
-    BaseOperator,
-    actor,
-    all_colors,
-    anything_to_follow,
-    capitalized,
-    footage,
-    idle,
-    two_keyframes,
-    warn,
-)
+from ..keyframes.scene_session import READ, SceneSession, go_on, read_session
+from ..shell import need
+from ..shell.base_operator import BaseOperator, capitalized, warn
 from ..shell.fields import Choice
 from ..shell.job_operator import JobOperator
 from ..shell.keyed_frames import straighten_unposed
 from ..shell.takes import active_take
 
 if TYPE_CHECKING:
-    from ...core.progress import Job, Progress
     from ...core.review.review import Review
-    from ..keyframes.scene_session import SceneSession
 
 
 SOLVED = 0.97
@@ -55,7 +44,7 @@ def reconstruct_take(operator: "PreviewedJob", scene: Scene) -> "Job[tuple[Scene
             )
     check_reconstructible(take, method)
 
-    def keep(stage: str, now: "SceneSession") -> None:
+    def keep(stage: str, now: SceneSession) -> None:
         if stage == "read" and watched:
             operator.preview = LivePreview(scene, armature, now.frames)
 
@@ -63,7 +52,7 @@ def reconstruct_take(operator: "PreviewedJob", scene: Scene) -> "Job[tuple[Scene
     return made, (yield from stretch(judge(made), SOLVED, 1.0))
 
 
-def judge(made: "SceneSession") -> "Job[Review]":
+def judge(made: SceneSession) -> "Job[Review]":
     """The review of a session's motion."""
     from ...core.estimate.reconstruct import Reconstruction
     from ...core.review.review import review
@@ -72,7 +61,7 @@ def judge(made: "SceneSession") -> "Job[Review]":
     return review(made.session[Posed].seen.take, made.session[Reconstruction], made.frames)
 
 
-def keep_motion(operator: JobOperator, scene: Scene, made: "SceneSession", judged: "Review") -> str:
+def keep_motion(operator: JobOperator, scene: Scene, made: SceneSession, judged: "Review") -> str:
     """Write the motion; the keyframes stay in their own Action. Returns a line."""
     from ...core.estimate.reconstruct import Reconstruction
     from ...core.take.presence import unseen_line
@@ -94,7 +83,7 @@ class PreviewedJob(JobOperator):
     preview: Any = None
     """The running `LivePreview`; not named as type, since Blender evaluates annotations of its classes."""
 
-    def watch(self, progress: "Progress") -> None:
+    def watch(self, progress: Progress) -> None:
         if self.preview is not None and progress.preview is not None:
             self.preview.show(progress.preview)
 
@@ -108,7 +97,14 @@ class KEYMARK_OT_reconstruct(PreviewedJob, bpy.types.Operator):
     """Reconstruct every frame from the footage and the keyframes; the motion becomes an Action of its own"""
 
     bl_label = "Reconstruct"
-    requirements = (footage, actor, anything_to_follow, all_colors, two_keyframes, idle)
+    requirements = (
+        need.footage,
+        need.actor,
+        need.anything_to_follow,
+        need.all_colors,
+        need.two_keyframes,
+        need.idle,
+    )
 
     def start(self, scene: Scene) -> "Job[tuple[SceneSession, Review]]":
         return (yield from reconstruct_take(self, scene))
@@ -121,7 +117,7 @@ class KEYMARK_OT_show_action(BaseOperator, bpy.types.Operator):
     """Animate the actor by its keyframes, the reconstructed motion or the final Action"""
 
     bl_label = "Show on Actor"
-    requirements = (actor, idle)
+    requirements = (need.actor, need.idle)
 
     which: Choice(
         "Show",

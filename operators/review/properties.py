@@ -15,7 +15,6 @@ REASONS = (
 
 
 def _chosen(review: PropertyGroup, context: Context) -> None:
-    """Go to the weak frame that was clicked in the list."""
     if review.active_weak_frame < len(review.weak_frames):
         show_frame(review.id_data, review.weak_frames[review.active_weak_frame].frame)
 
@@ -32,9 +31,7 @@ class KEYMARK_PG_weak_frame(bpy.types.PropertyGroup):
 class KEYMARK_PG_review(bpy.types.PropertyGroup):
     """Review of a take's motion."""
 
-    frame_count: Integer(
-        "Frames", "Number of reconstructed frames; 0 before the first reconstruction", default=0, min=0
-    )
+    frame_count: Integer("Frames", "Reconstructed frames; 0 before the first reconstruction", min=0)
     confidence: Number(
         "Confidence",
         "Share of all joints in all frames that are expected within 2.5 % of the performer's "

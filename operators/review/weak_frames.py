@@ -8,20 +8,11 @@ from mathutils import Matrix, Vector
 from ...core.errors import InputError
 from ..bridge.actions import assign_action
 from ..bridge.actor_bones import evaluated
+from ..bridge.keyframes import store_pose
 from ..bridge.scene_frames import at_scene_frame, show_frame, showing_action
 from ..footage.camera_view import look_through
-from ..shell.base_operator import (
-    BaseOperator,
-    Unchanged,
-    actor,
-    call,
-    camera,
-    capitalized,
-    idle,
-    motion,
-    reported,
-    weak_frames,
-)
+from ..shell import need
+from ..shell.base_operator import BaseOperator, Unchanged, call, capitalized, reported
 from ..shell.fields import Choice
 from ..shell.keyed_frames import new_keyframe_action, straighten_unposed
 from ..shell.panel import RowList, draw_sentence
@@ -80,7 +71,7 @@ class KEYMARK_OT_jump_to_weak_frame(BaseOperator, bpy.types.Operator):
     """Go to a frame that is worth another keyframe"""
 
     bl_label = "Jump to Weak Frame"
-    requirements = (weak_frames,)
+    requirements = (need.weak_frames,)
 
     direction: Choice(
         "Direction",
@@ -115,7 +106,7 @@ class KEYMARK_OT_pose_from_motion(BaseOperator, bpy.types.Operator):
     """Store the reconstructed pose as a keyframe, and correct it at once by dragging its joints"""
 
     bl_label = "Add Keyframe Here"
-    requirements = (actor, motion, idle)
+    requirements = (need.actor, need.motion, need.idle)
 
     where: Choice(
         "Where",
@@ -135,8 +126,6 @@ class KEYMARK_OT_pose_from_motion(BaseOperator, bpy.types.Operator):
 
     def run(self, context: Context) -> None:
         """Key the motion's pose in the keyframe Action, and let that animate the actor."""
-        from ..bridge.keyframes import store_pose
-
         scene = context.scene
         take = active_take(scene)
         review, frame = take.review, float(scene.frame_current_final)
@@ -163,7 +152,7 @@ class KEYMARK_OT_look_from_side(BaseOperator, bpy.types.Operator):
 
     bl_label = "Side View"
     bl_options = {"REGISTER"}
-    requirements = (camera, actor)
+    requirements = (need.camera, need.actor)
 
     def run(self, context: Context) -> None:
         take, own = active_take(context.scene), context.space_data
@@ -177,10 +166,7 @@ class KEYMARK_OT_look_from_side(BaseOperator, bpy.types.Operator):
 
 
 def look_from_side(space: SpaceView3D, camera_object: Object, armature_object: Object) -> None:
-    """Let a viewport look at an actor across a camera's line of sight, the camera being on the left.
-
-    The view is level and without perspective, so that depths can be compared.
-    """
+    """Let a viewport look at an actor across a camera's view, level, without perspective: depths show."""
     shown = evaluated(armature_object)
     ends = np.array([end for bone in shown.pose.bones for end in (bone.head, bone.tail)])
     center = shown.matrix_world @ Vector((ends.min(axis=0) + ends.max(axis=0)) / 2.0)

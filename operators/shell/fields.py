@@ -11,6 +11,8 @@ from ...core.files.records import Record, declared, descriptions
 
 HIDDEN, SKIP_SAVE = {"HIDDEN"}, {"SKIP_SAVE"}
 """Options of a property: shown nowhere; of an operator, not as it was the last time."""
+TOLERANCE = {"min": 0.1, "soft_min": 1.0, "soft_max": 50.0, "max": 500.0, "precision": 1, "step": 50}
+"""Settings of a distance in millimeters that keys may be off."""
 RELATIVE_PATH = {"ANIMATABLE", "PATH_SUPPORTS_BLEND_RELATIVE"}
 
 
@@ -31,14 +33,25 @@ Entries = bpy.props.CollectionProperty
 Group = bpy.props.PointerProperty
 
 
-# --- Blender's properties of choices that a record of the core declares
+def File(description: str, name: str = "File Path", **settings: object) -> Any:  # noqa: N802
+    """An operator's path of a file, which is not as it was the last time."""
+    return Text(name, description, subtype="FILE_PATH", options=SKIP_SAVE, **settings)
+
+
+def Pixel(name: str, description: str) -> Any:  # noqa: N802
+    """An operator's place in the footage, from its top left corner."""
+    return Vector(
+        name, f"{description}, in pixels of the footage from its top left corner", size=2, options=SKIP_SAVE
+    )
+
+
+def Pointer(name: str, description: str, kind: type, **settings: object) -> Any:  # noqa: N802
+    """A property that points to a data-block of a kind."""
+    return Group(name=name, description=description, type=kind, **settings)
 
 
 def declared_property(record: type[Record], field: str, **settings: Any) -> Any:
-    """The property of a record's field: a choice, a flag, a number or a text, with its default.
-
-    The tooltip is the field's docstring; `settings` are what else Blender shows.
-    """
+    """The property of a record's field, with its default and docstring; `settings` say what else."""
     kind, _, default = declared(record)[field]
     kind = kind.item if isinstance(kind, kinds.Nullable) else kind
     title = field.replace("_", " ").title()

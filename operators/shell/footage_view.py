@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 
 import bpy
 import numpy as np
-from bpy.types import Area, Context, Event, PropertyGroup, Region, Scene, SpaceClipEditor, SpaceView3D
+from bpy.types import Area, Context, Event, PropertyGroup, Region, Scene, SpaceView3D
 from bpy_extras.view3d_utils import location_3d_to_region_2d, region_2d_to_location_3d, region_2d_to_vector_3d
 from numpy.typing import ArrayLike
 
@@ -59,22 +59,24 @@ def ui_scale() -> float:
 
 
 def footage_view(scene: Scene, take: PropertyGroup, area: Area, region: Region) -> FootageView | None:
-    """Return how a region of an editor shows a take's footage; None if it does not.
-
-    Instead of a missing file Blender shows a picture of another size, which is not the footage.
-    """
+    """How a region of an editor shows a take's footage; None if it does not, or its file is missing."""
     if take.clip is None or take.clip_state.missing or region.type != "WINDOW" or not all(take.clip.size):
         return None
     space = area.spaces.active
     if area.type == "VIEW_3D":
         return _camera_view(scene, take, space, region)
-    if area.type == "CLIP_EDITOR" and space.clip == take.clip and space.view == "CLIP":
-        return _clip_view(scene, take, space, region)
-    return None
+    if area.type != "CLIP_EDITOR" or space.clip != take.clip or space.view != "CLIP":
+        return None
+    corner, opposite = (
+        np.array(region.view2d.view_to_region(*uv, clip=False), dtype=np.float64)
+        for uv in ((0.0, 1.0), (1.0, 0.0))
+    )
+    undistorted = space.clip_user.use_render_undistorted and take.camera is not None
+    lens = read_lens(footage_of(scene, take)) if undistorted else None
+    return FootageView(region, tuple(take.clip.size), corner, opposite - corner, lens)
 
 
 def _views(context: Context, take: PropertyGroup) -> Iterator[FootageView]:
-    """Every region of the window that shows the footage."""
     for area in context.screen.areas:
         for region in area.regions:
             view = footage_view(context.scene, take, area, region)
@@ -122,29 +124,12 @@ def _camera_view(scene: Scene, take: PropertyGroup, space: SpaceView3D, region: 
     )
 
 
-def _clip_view(scene: Scene, take: PropertyGroup, space: SpaceClipEditor, region: Region) -> FootageView:
-    view = region.view2d
-    top_left, bottom_right = (
-        np.array(view.view_to_region(*corner, clip=False), dtype=np.float64)
-        for corner in ((0.0, 1.0), (1.0, 0.0))
-    )
-    lens = None
-    if space.clip_user.use_render_undistorted and take.camera is not None:
-        lens = read_lens(footage_of(scene, take))
-    return FootageView(
-        region, (take.clip.size[0], take.clip.size[1]), top_left, bottom_right - top_left, lens
-    )
-
-
 def _undistorted(lens: Camera) -> Camera:
     return replace(lens, distortion=(0.0, 0.0, 0.0))
 
 
 def clip_index(take: PropertyGroup, scene_frame: int | None = None) -> int:
-    """Index of the clip's frame that is shown in a scene frame, the current one by default; -1 for none.
-
-    Where the rate varies and the clip was not read yet, the frame is a guess.
-    """
+    """Index of the clip's frame shown in a scene frame, by a guess if its rate varies unread; -1 for none."""
     scene, footage = take.id_data, footage_of(take.id_data, take)
     reading = reading_of(take)
     if reading is not None:
@@ -152,9 +137,6 @@ def clip_index(take: PropertyGroup, scene_frame: int | None = None) -> int:
     else:
         frames = footage.first_frame + np.arange(max(1, take.clip.frame_duration), dtype=np.float64)
     return int(shown_index(frames, scene.frame_current if scene_frame is None else scene_frame))
-
-
-# --- What an operator that waits for clicks on the footage asks for
 
 
 SIDES = {".L": "the performer's own left", ".R": "the performer's own right"}
@@ -221,17 +203,11 @@ def stop_asking(context: Context) -> None:
     redraw_footage(context)
 
 
-# --- Operators that wait for clicks on the footage, and what lies under the mouse
-
-
 NAVIGATION = frozenset(
     "MIDDLEMOUSE WHEELUPMOUSE WHEELDOWNMOUSE TRACKPADPAN TRACKPADZOOM MOUSEPAN MOUSEZOOM HOME LEFT_ARROW "
     "RIGHT_ARROW UP_ARROW DOWN_ARROW NUMPAD_PLUS NUMPAD_MINUS".split()
 )
 """Events that move the view or change the frame; the operator passes them on to Blender."""
-
-
-# --- The 3D view under the mouse
 
 
 @dataclass(frozen=True, eq=False)
@@ -276,9 +252,6 @@ def area_under(context: Context, x: int, y: int) -> Area | None:
 
 def _contains(box: Region | Area, x: int, y: int) -> bool:
     return box.x <= x < box.x + box.width and box.y <= y < box.y + box.height
-
-
-# --- Operators that ask for one click on the footage after another
 
 
 DONE = frozenset({"RET", "NUMPAD_ENTER"})

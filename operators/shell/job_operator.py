@@ -8,20 +8,18 @@ before the job, and Blender adds no undo step.
 from abc import abstractmethod
 from collections.abc import Generator
 from time import monotonic
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import bpy
 from bpy.types import Context, Event, Scene
 
 from ...core.errors import InputError
+from ...core.progress import Progress
 from ...core.progress import run as run_job
 from ..bridge.keys import keys_changed
 from .base_operator import BaseOperator, capitalized, reported
 from .job_progress import time_left
 from .takes import redraw_sidebars, redraw_sidebars_soon
-
-if TYPE_CHECKING:
-    from ...core.progress import Progress
 
 
 def cancel_job(operator: Any, context: Context, event: Event) -> bool:
@@ -67,7 +65,7 @@ class JobOperator(BaseOperator):
     def finish(self, scene: Scene, result: Any) -> None:
         """Write the job's result into the scene."""
 
-    def watch(self, progress: "Progress") -> None:
+    def watch(self, progress: Progress) -> None:
         """Show a preview of the job's result; by default there is none."""
 
     def unwatch(self) -> None:

@@ -30,10 +30,7 @@ ATTACHED = {"WindowManager.keymark_progress": Group(type=KEYMARK_PG_progress)}
 
 
 def job_is_running(context: Context, job: str = "") -> bool:
-    """Whether one of Keymark's jobs runs in any window; an open file browser is none.
-
-    `job` is how its operator's name begins, as `keymark.reconstruct`; any but `TOOLS` by default.
-    """
+    """Whether any of Keymark's jobs but `TOOLS`, or one named so, runs; open browsers are none."""
     wanted = job.replace("keymark.", OPERATOR_PREFIX) or OPERATOR_PREFIX
     return any(
         operator.bl_idname.startswith(wanted)
@@ -45,10 +42,7 @@ def job_is_running(context: Context, job: str = "") -> bool:
 
 
 def steady_frame(context: Context) -> float:
-    """The scene's frame; while a job runs, the one at which it was begun.
-
-    Previews go through the clip, and panels that followed them would change their height under the mouse.
-    """
+    """The scene's frame; of a job's beginning while it runs, else panels would change under the mouse."""
     manager = context.window_manager
     begun = manager.keymark_progress.stage and job_is_running(context)
     return float(manager.keymark_progress.frame if begun else context.scene.frame_current_final)

@@ -12,14 +12,12 @@ from numpy.typing import ArrayLike
 from ...core.arrays import BoolArray
 from ..bridge.actions import assign_action
 from ..bridge.actor_bones import evaluated
+from ..bridge.fcurves import straighten_extremities
 from ..bridge.keys import keys_changed
 
 
 def show_keyframes(take: PropertyGroup) -> bool:
-    """Let the keyframe Action animate the actor instead of the motion; return whether that changed anything.
-
-    The new Action is evaluated at once: evaluated later, it would overwrite a pose set in between.
-    """
+    """Let the keyframe Action, evaluated at once, animate the actor; return whether another did."""
     data = take.armature.animation_data
     if data is None or data.action == take.keyframe_action:
         return False
@@ -33,12 +31,7 @@ def show_keyframes(take: PropertyGroup) -> bool:
 
 
 def straighten_unposed(take: PropertyGroup) -> None:
-    """Put hands and feet back to rest where they stand as the motion that is shown has turned them.
-
-    To be called before keyframes are stored or shown: nobody has posed these.
-    """
-    from ..bridge.fcurves import straighten_extremities
-
+    """Put hands and feet back to rest that the motion has turned, before keyframes are stored or shown."""
     data = take.armature.animation_data
     shown = None if data is None else data.action
     if shown is not None and shown in (take.motion_action, take.finish.action):
@@ -64,12 +57,12 @@ def has_frame(frames: Sequence[float], frame: float) -> bool:
 
 def have_frames(frames: Sequence[float], wanted: ArrayLike) -> BoolArray:
     """Which of the wanted frames (K,) ascending frames contain, as `has_frame` tells of one."""
-    asked, known = np.asarray(wanted, dtype=np.float64), np.asarray(frames, dtype=np.float64)
+    sought, known = np.asarray(wanted, dtype=np.float64), np.asarray(frames, dtype=np.float64)
     if not len(known):
-        return np.zeros(len(asked), dtype=bool)
-    after = np.searchsorted(known, asked)
+        return np.zeros(len(sought), dtype=bool)
+    after = np.searchsorted(known, sought)
     near = np.stack([known[np.maximum(after - 1, 0)], known[np.minimum(after, len(known) - 1)]])
-    return np.asarray((np.abs(near - asked) < SAME_FRAME).any(axis=0))
+    return np.asarray((np.abs(near - sought) < SAME_FRAME).any(axis=0))
 
 
 @persistent

@@ -30,9 +30,6 @@ def note_contradictions(take: PropertyGroup, frame: float, names: Sequence[str])
         entry.frame, entry.names, entry.reading = frame, SEPARATOR.join(names), take.reading_key
 
 
-# --- Notices: what a person must know of a step for as long as it is true, in the panel of that step
-
-
 class KEYMARK_PG_notice(bpy.types.PropertyGroup):
     """A sentence about a step of a take."""
 
@@ -46,10 +43,7 @@ class KEYMARK_PG_notice(bpy.types.PropertyGroup):
 def give_notices(
     take: PropertyGroup, step: str, about: str, sentences: Iterable[str] = (), frame: float | None = None
 ) -> None:
-    """Replace the notices about something of a step of `STEPS`; none: there is nothing to know any more.
-
-    `about` is any name, such as `clip`; notices of a keyframe's scene frame hold while there is one.
-    """
+    """Replace the notices on something of a step of `STEPS`; those of a frame hold while it is a keyframe."""
     notices = take.notices
     for index in reversed(range(len(notices))):
         if (notices[index].step, notices[index].about) == (step, about):

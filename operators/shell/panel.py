@@ -1,6 +1,7 @@
 """The sidebar: which of its steps is open, bases of its panels, and their rows."""
 
 from abc import abstractmethod
+from collections.abc import Callable
 from textwrap import wrap
 from typing import ClassVar
 
@@ -31,26 +32,20 @@ def is_open(take: PropertyGroup, name: str) -> bool:
     return name == (chosen if chosen_at == reached else reached)
 
 
-def open_step(take: PropertyGroup, name: str, opened: bool) -> None:
-    """Open a step, or a kind of evidence, in the sidebar, which folds the others; or fold it."""
-    if opened == is_open(take, name):
-        return
-    if name in KINDS:
-        _kinds[take.identifier] = name if opened else ""
-    else:
-        _chosen[take.identifier] = TakeState(take).next[0], name if opened else ""
-
-
-def _switch(name: str) -> "bpy.types.AnyType":
+def _switch(name: str) -> bpy.types.AnyType:
     def get(_steps: PropertyGroup) -> bool:
         take = find_take(bpy.context.scene)
         return take is not None and is_open(take, name)
 
     def set_(_steps: PropertyGroup, opened: bool) -> None:
         take = find_take(bpy.context.scene)
-        if take is not None:
-            open_step(take, name, opened)
-            redraw_sidebars_soon()
+        if take is None or opened == is_open(take, name):
+            return
+        if name in KINDS:
+            _kinds[take.identifier] = name if opened else ""
+        else:
+            _chosen[take.identifier] = TakeState(take).next[0], name if opened else ""
+        redraw_sidebars_soon()
 
     return Switch("Open", "Show this and fold the others", get=get, set=set_)
 
@@ -63,9 +58,6 @@ KEYMARK_PG_steps.__annotations__ = {name: _switch(name) for name in (*STEPS, *KI
 
 
 ATTACHED = {"WindowManager.keymark_steps": Group(type=KEYMARK_PG_steps)}
-
-
-# --- Bases of Keymark's panels, a step's among them, and their rows: a job's progress, a wrapped sentence
 
 
 ROOMY_PX = 270.0
@@ -136,11 +128,7 @@ class RowList:
 
 
 def draw_progress(layout: UILayout, context: Context, *jobs: str) -> bool:
-    """Draw the progress of the running job, of any or these operators', on one line; return whether one runs.
-
-    It replaces one line, so that nothing moves when a job begins or ends: where panels change their height,
-    Blender draws them over each other for a moment. An eyedropper that waits for a click has no progress.
-    """
+    """Draw the progress of the job that runs, any or these operators', on a line; return whether one runs."""
     progress = context.window_manager.keymark_progress
     if not progress.stage or not any(job_is_running(context, job) for job in jobs or ("",)):
         return False
@@ -183,10 +171,7 @@ def draw_sentence(
     most_lines: int | None = None,
     beside_px: float = 0.0,
 ) -> None:
-    """Draw a translated sentence, wrapped to the width of the sidebar, less what stands beside it.
-
-    Further lines than the most end in dots.
-    """
+    """Draw a sentence, wrapped to the sidebar less what is beside it; beyond the most lines are dots."""
     column = layout.column(align=True)
     column.scale_y = LINE_HEIGHT
     lines = _lines(context, sentence, most_lines, beside_px)
@@ -219,24 +204,19 @@ def right_end(layout: UILayout) -> UILayout:
     return row
 
 
-def draw_readout(layout: UILayout, text: str) -> None:
-    """Draw what is seen in this frame, at the right end of a header, if it does not lie on the name there."""
-    if is_roomy(bpy.context) or len(text) <= 7:
-        row = right_end(layout)
-        row.active = False
-        row.label(text=text, translate=False)
-
-
 class StepPanel(TakePanel):
-    """The panel of a step: a subclass names the step and gives `draw_step`.
-
-    Panels inside it, which name it as their parent, are hidden while it is folded.
-    """
+    """The panel of a step: a subclass names it and gives `draw_step`; folded, it hides those inside."""
 
     bl_options = {"HIDE_HEADER"}
     bl_label: str
     step: ClassVar[str]  # a name of `STEPS`
     options: ClassVar[str] = ""  # the popover of what is rarely changed
+    summary: Callable[[TakeState], str] = staticmethod(
+        lambda state: ""
+    )  # what it has come to, in few letters
+    is_wrong: Callable[[TakeState], bool] = staticmethod(lambda state: False)  # as its body tells
+    action: Callable[[TakeState], tuple[str, str]] = staticmethod(lambda state: ("", ""))
+    """The operator that is next while the step is folded, and a short label."""
 
     def draw(self, context: Context) -> None:
         """Draw the header; where it is open, the notices and the step."""
@@ -269,18 +249,3 @@ class StepPanel(TakePanel):
     @abstractmethod
     def draw_step(self, context: Context, body: UILayout, state: TakeState) -> None:
         """Draw the step below its header, with properties in Blender's two columns."""
-
-    @classmethod
-    def summary(cls, state: TakeState) -> str:
-        """What the step has come to, in few letters; nothing by default."""
-        return ""
-
-    @classmethod
-    def is_wrong(cls, state: TakeState) -> bool:
-        """Whether something is wrong with the step that its body tells of."""
-        return False
-
-    @classmethod
-    def action(cls, state: TakeState) -> tuple[str, str]:
-        """The operator that is next while the step is folded, and a short label; none by default."""
-        return "", ""

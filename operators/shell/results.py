@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, TypeVar
 import bpy
 from bpy.types import PropertyGroup
 
+from ...core.arrays import Array
 from ...core.errors import ConversionError
 from ...core.files.digest import ArrayCache, Arrays, digest
 
 if TYPE_CHECKING:
-    from ...core.arrays import Array
     from ...core.markers.reading import Reading
     from ...core.review.review import Review
 
@@ -41,16 +41,13 @@ class LruCache(OrderedDict[str, Result | None]):
             self.popitem(last=False)
 
 
-# --- Cache of a take's results
-
-
 @dataclass(frozen=True, eq=False)
 class FootageSpeed:
     """V_sum of a take's footage over scene frames."""
 
     key: str  # digest of it
-    frames: "Array"  # (F,) scene frames
-    values: "Array"  # (F,) [px per frame]
+    frames: Array  # (F,) scene frames
+    values: Array  # (F,) [px per frame]
 
 
 EXTENSION = (__package__ or "").partition(".operators")[0]
@@ -58,7 +55,7 @@ EXTENSION = (__package__ or "").partition(".operators")[0]
 
 _readings: "LruCache[Reading]" = LruCache()
 _reviews: "LruCache[Review]" = LruCache()
-_speeds: "LruCache[FootageSpeed]" = LruCache()  # by the take's identifier and the key of its reading
+_speeds: LruCache[FootageSpeed] = LruCache()  # by the take's identifier and the key of its reading
 
 
 MADE: LruCache[object] = LruCache(12)
@@ -66,10 +63,7 @@ MADE: LruCache[object] = LruCache(12)
 
 
 def reading_of(take: PropertyGroup) -> "Reading | None":
-    """The last reading of a take's clip; None if there is none, or it was lost.
-
-    It is for display: only `read_footage` checks whether it still holds.
-    """
+    """The last reading of a take's clip, for display: only `read_footage` checks it; None if it was lost."""
     from ...core.markers.reading import reading_from_arrays  # late: registering must not need OpenCV
 
     return _load(_readings, take.reading_key, reading_from_arrays)
@@ -111,12 +105,12 @@ def clear_review(take: PropertyGroup) -> None:
         shown.property_unset(name)
 
 
-def speed_of(take: PropertyGroup) -> "FootageSpeed | None":
+def speed_of(take: PropertyGroup) -> FootageSpeed | None:
     """The speed by which keyframes were last proposed in this session, of the take's reading."""
     return _speeds.get(f"{take.identifier} {take.reading_key}")
 
 
-def keep_speed(take: PropertyGroup, frames: "Array", values: "Array") -> None:
+def keep_speed(take: PropertyGroup, frames: Array, values: Array) -> None:
     """Keep in memory the speed in a take's footage, (F,) [px per frame] at scene frames (F,)."""
     speed = FootageSpeed(f"speed-{digest(frames, values)}", frames, values)
     _speeds[f"{take.identifier} {take.reading_key}"] = speed
@@ -129,7 +123,6 @@ def clear_cache() -> None:
 
 
 def _load(cache: LruCache[Result], key: str, from_arrays: Callable[[Arrays], Result]) -> Result | None:
-    """A result from memory or disk; None if it is in neither."""
     if not key:
         return None
 

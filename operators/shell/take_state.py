@@ -15,6 +15,7 @@ from ...core.errors import InputError
 from ..bridge.actions import action_digest, action_of
 from ..bridge.footage import read_placement
 from ..bridge.footage_camera import may_move
+from ..bridge.keyframes import keyed_frames, unchanged_keyframes
 from ..bridge.keys import FOUND, PICTURED, revision
 from .keyed_frames import has_frame
 from .notes import SAME_FRAME, SEPARATOR
@@ -36,8 +37,8 @@ class KeyedFrames:
     pictured: tuple[float, ...] = ()  # those that a person put right in the picture alone
 
 
-_keyed: "LruCache[KeyedFrames]" = LruCache()
-_digests: "LruCache[str]" = LruCache(64)
+_keyed: LruCache[KeyedFrames] = LruCache()
+_digests: LruCache[str] = LruCache(64)
 """Both by the session numbers (`session_uid`) of what they were read from, and the revision of keys."""
 
 
@@ -67,10 +68,7 @@ class TakeState:
 
     @cached_property
     def actor(self) -> Object | None:
-        """The actor if it is in the scene.
-
-        Deleted with X it is in no scene any more, yet in the file, as long as the take points to it.
-        """
+        """The actor if it is in the scene; deleted with X it is in the file alone, kept by the take."""
         actor = self.take.armature
         return actor if actor is not None and actor.name in self.take.id_data.objects else None
 
@@ -117,8 +115,6 @@ class TakeState:
         source = take.armature, take.keyframe_action
 
         def read() -> KeyedFrames:
-            from ..bridge.keyframes import keyed_frames, unchanged_keyframes
-
             with suppress(InputError):  # an armature of other bones
                 found, pictured = (unchanged_keyframes(*source, kind) for kind in (FOUND, PICTURED))
                 return KeyedFrames(keyed_frames(*source), found, pictured)
@@ -164,10 +160,7 @@ class TakeState:
         return [frame for frame in self.proposed if frame not in keyed]
 
     def depth_is_found(self, frame: float) -> bool:
-        """Whether a pose made from what a frame has is only as deep as it was found: nobody posed it.
-
-        Where nothing is keyed that holds of every clip some of whose keyframes were found.
-        """
+        """Whether a pose made from a frame's, or the clip's without a key there, is as deep as found."""
         found = sorted({*self.matched, *self.keyed.pictured})
         return has_frame(found if has_frame(self.keyed.all, frame) else found and [frame], frame)
 
@@ -186,17 +179,12 @@ class TakeState:
                 markers = {marker.name for marker in take.markers}
                 points = BODY_POINTS if follow.use_keypoints or follow.use_tracks else ()
                 names = entry.names.split(SEPARATOR)
-                return tuple(
-                    name for name in names if (follow.use_markers if name in markers else name in points)
-                )
+                return tuple(x for x in names if (follow.use_markers if x in markers else x in points))
         return ()
 
     @cached_property
     def doubtful(self) -> list[int]:
-        """Places in the list of the found keyframes to check: contradicted ones first, then the least sure.
-
-        Those are left out that somebody has decided on.
-        """
+        """Places of undecided found keyframes to check: contradicted ones first, then the least sure."""
         ranks = []
         for index, match in enumerate(self.take.matching.matches):
             contradicted = bool(self.contradictions_at(match.frame))

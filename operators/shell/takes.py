@@ -1,31 +1,23 @@
 """The takes of a scene: finding one, adding one, switching between them."""
 
 from collections.abc import Iterable, Iterator
-from typing import TYPE_CHECKING
 from uuid import uuid4
 
 import bpy
 from bpy.app import timers
 from bpy.types import Area, Context, Object, PropertyGroup, Scene
 
+from ...core.camera.camera_fields import CameraPlacement
 from ...core.detect.layouts import named_point
 from ...core.errors import InputError
 from ..bridge.footage import Footage, set_scene_range
 from ..bridge.scene_evidence import AssignedTrack, clip_tracks
 
-if TYPE_CHECKING:
-    from ...core.camera.camera_fields import CameraPlacement
-
-
 VERSION = 1  # version of Keymark's properties; each scene holds the version that wrote it
 
 
 def active_take(scene: Scene) -> PropertyGroup:
-    """The active take.
-
-    Raises:
-        InputError: The scene has no take.
-    """
+    """The active take; InputError where the scene has none."""
     take = find_take(scene)
     if take is None:
         raise InputError(f"scene '{scene.name}' has no take; load the footage or open a take first")
@@ -41,11 +33,7 @@ def find_take(scene: Scene) -> PropertyGroup | None:
 
 
 def take_by_identifier(scene: Scene, identifier: str) -> PropertyGroup:
-    """The take with an identifier, active or not.
-
-    Raises:
-        InputError: There is none: it was removed.
-    """
+    """The take with an identifier, active or not; InputError where it was removed."""
     for take in scene.keymark.takes:
         if take.identifier == identifier:
             return take
@@ -53,11 +41,7 @@ def take_by_identifier(scene: Scene, identifier: str) -> PropertyGroup:
 
 
 def actor_of(take: PropertyGroup) -> Object:
-    """A take's armature.
-
-    Raises:
-        InputError: The take has none, or it was deleted.
-    """
+    """A take's armature; InputError where it has none, or it was deleted."""
     if take.armature is None:
         raise InputError(f"take '{take.name}' has no actor; build one, or choose its armature")
     return take.armature
@@ -115,7 +99,6 @@ def show_active_take(scene: Scene) -> None:
 
 
 def _select(scene: Scene, armature_object: Object | None) -> None:
-    """Select an actor and make it active, unless another object is being edited."""
     layer = bpy.context.view_layer
     if armature_object is None or bpy.context.scene != scene or armature_object.name not in layer.objects:
         return
@@ -126,9 +109,6 @@ def _select(scene: Scene, armature_object: Object | None) -> None:
         chosen.select_set(False)
     armature_object.select_set(True)
     layer.objects.active = armature_object
-
-
-# --- Motion tracks that follow a body point
 
 
 def assigned_tracks(take: PropertyGroup) -> tuple[AssignedTrack, ...]:
@@ -142,9 +122,6 @@ def point_of(take: PropertyGroup, owner: str, track: str) -> str:
     """The body point that a motion track follows; empty for none."""
     choices = {(choice.owner, choice.track): choice.point for choice in take.follow.tracks}
     return choices.get((owner, track), named_point(track) or "")
-
-
-# --- Redrawing editors and their sidebars
 
 
 FOOTAGE_EDITORS = ("VIEW_3D", "CLIP_EDITOR")
@@ -176,10 +153,7 @@ def redraw_sidebars(context: Context) -> None:
 
 
 def redraw_sidebars_soon() -> None:
-    """Redraw the sidebars once more, after the next drawing.
-
-    Blender moves sub-panels only when it draws once more after the panel above them has grown or shrunk.
-    """
+    """Redraw the sidebars after the next drawing: Blender moves sub-panels under a changed one only then."""
     if not bpy.app.background and not timers.is_registered(_redraw_once):
         timers.register(_redraw_once, first_interval=0.1)
 
@@ -198,12 +172,9 @@ def _redraw_once() -> None:
     redraw_sidebars(bpy.context)
 
 
-# --- Whether a take's camera still stands where it was put by guess
-
-
 NO_GUESS = (0.0, 0.0, 0.0)  # height, tilt and roll of a take whose camera was not put anywhere by guess
 
 
-def as_numbers(placement: "CameraPlacement") -> tuple[float, float, float]:
+def as_numbers(placement: CameraPlacement) -> tuple[float, float, float]:
     """Height [m], tilt and roll [rad]."""
     return placement.height_m, placement.tilt_rad, placement.roll_rad

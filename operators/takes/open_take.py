@@ -9,30 +9,18 @@ from ...core.errors import InputError
 from ...core.files.json_file import read_json_value
 from ...core.files.paths import VIDEOS
 from ..footage.load_footage import IMAGES
-from ..shell.base_operator import (
-    BaseOperator,
-    browse,
-    call,
-    chosen_path,
-    idle,
-    object_mode_possible,
-    reported,
-)
-from ..shell.fields import HIDDEN, SKIP_SAVE, Choice, Switch, Text
+from ..shell import need
+from ..shell.base_operator import BaseOperator, browse, call, chosen_path, reported
+from ..shell.fields import HIDDEN, SKIP_SAVE, Choice, File, Switch, Text
 
 
 class KEYMARK_OT_open_take(BaseOperator, bpy.types.Operator):
     """Open a take: its footage behind its camera, its actor, what is followed, and its keyframes"""
 
     bl_label = "Open Take"
-    requirements = (object_mode_possible, idle)
+    requirements = (need.object_mode_possible, need.idle)
 
-    filepath: Text(
-        "File Path",
-        "The take's folder, or the take.json in it; in a shoot, also the clip alone",
-        subtype="FILE_PATH",
-        options=SKIP_SAVE,
-    )
+    filepath: File("The take's folder, or the take.json in it; in a shoot, also the clip alone")
     keyframes: Text("Keyframes", "Name of the keyframe file in the take's folder", default="keyframes.json")
     filter_glob: Text(default=";".join(("*take.json", *(f"*{ending}" for ending in VIDEOS))), options=HIDDEN)
     filter_folder: Switch(default=True, options=HIDDEN)
@@ -74,7 +62,7 @@ class KEYMARK_OT_open_example(BaseOperator, bpy.types.Operator):
     """Open a take that comes with Keymark, ready to reconstruct; nothing is written unless you copy it"""
 
     bl_label = "Open Example"
-    requirements = (object_mode_possible, idle)
+    requirements = (need.object_mode_possible, need.idle)
 
     example: Choice("Example", "Which take is opened", items=EXAMPLES, options=SKIP_SAVE)
     copy: Switch(
@@ -110,7 +98,6 @@ class KEYMARK_OT_open_example(BaseOperator, bpy.types.Operator):
 
     @staticmethod
     def _draw_menu(menu: Menu, context: Context) -> None:
-        """Draw each example, to be opened as it is, and once more to be copied first."""
         for copy, icon in ((False, "FILE_MOVIE"), (True, "FILE_FOLDER")):
             for name, title, _ in EXAMPLES:
                 text = f"Copy {title} to Folder" if copy else title
@@ -146,7 +133,7 @@ class KEYMARK_OT_open_dropped(BaseOperator, bpy.types.Operator):
 
     bl_label = "Open Take, Library or Keypoints"
     bl_options = {"REGISTER", "INTERNAL"}
-    requirements = (idle,)
+    requirements = (need.idle,)
 
     filepath: Text("File Path", subtype="FILE_PATH", options=SKIP_SAVE)
 

@@ -139,7 +139,6 @@ def _headline(state: TakeState) -> tuple[str, str, str]:
 
 
 def _draw_beginning(layout: UILayout, context: Context) -> None:
-    """Draw what Keymark does and what to begin with in an empty scene."""
     draw_sentence(layout, context, "A video of a person becomes animation on your character", "INFO")
     row = layout.row()
     row.scale_y = 2.4

@@ -8,6 +8,7 @@ from bpy.types import Context, PropertyGroup
 
 from ...core.errors import InputError
 from ..actor.properties import KEYMARK_PG_lengths, in_meters
+from ..bridge.actions import action_of, assign_action
 from ..bridge.actor_bones import is_actor
 from ..bridge.footage import is_missing
 from ..character.properties import KEYMARK_PG_character
@@ -23,7 +24,7 @@ from ..footage.properties import (
 from ..keyframes.found_properties import KEYMARK_PG_match, KEYMARK_PG_matching
 from ..overlays.properties import KEYMARK_PG_overlays
 from ..review.properties import KEYMARK_PG_review
-from ..shell.fields import HIDDEN, Choice, Entries, Group, Integer, Number, Switch, Text, Vector
+from ..shell.fields import HIDDEN, Choice, Entries, Group, Integer, Number, Pointer, Switch, Text, Vector
 from ..shell.notes import KEYMARK_PG_contradiction, KEYMARK_PG_notice
 from ..shell.takes import find_take, show_active_take, unique_name
 
@@ -35,14 +36,15 @@ METHODS = (
 
 
 def _armature_chosen(take: PropertyGroup, context: Context) -> None:
-    """Show the lengths of the chosen armature in the panel, and animate it by what the take has."""
     if not is_actor(take.armature):
         return
     with suppress(InputError, ModuleNotFoundError):  # another skeleton, or SciPy is missing
-        from ..actor.take_actor import reattach, show_lengths
+        from ..actor.take_actor import show_lengths
         from ..bridge.armature import read_body
 
-        reattach(take)
+        actions = [action for action in (take.motion_action, take.keyframe_action) if action is not None]
+        if actions and action_of(take.armature) is None:
+            assign_action(take.armature, actions[0])
         show_lengths(take, read_body(take.armature))
 
 
@@ -53,8 +55,8 @@ def _height_typed(take: PropertyGroup, _context: Context) -> None:
 
 
 def _renamed(take: PropertyGroup, context: Context) -> None:
-    others = [other.name for other in take.id_data.keymark.takes if other != take]
-    free = unique_name(take.name.strip() or "Take", others)
+    names = [other.name for other in take.id_data.keymark.takes if other != take]
+    free = unique_name(take.name.strip() or "Take", names)
     if take.name != free:
         take.name = free
 
@@ -76,18 +78,18 @@ class KEYMARK_PG_take(bpy.types.PropertyGroup):
 
     name: Text("Name", "Your name for this take", default="Take", update=_renamed)
     identifier: Text("Identifier", "Tells takes apart, whatever their names", options=HIDDEN)
-    clip: Group(
-        name="Clip",
-        description="The footage of the performer; the scene's size, rate and range follow it",
-        type=bpy.types.MovieClip,
+    clip: Pointer(
+        "Clip",
+        "The footage of the performer; the scene's size, rate and range follow it",
+        bpy.types.MovieClip,
         update=lambda take, _: clip_chosen(take),
     )
     clip_state: Group(type=KEYMARK_PG_clip_state)
     part: Group(type=KEYMARK_PG_part)
-    camera: Group(
-        name="Camera",
-        description="The camera that took the footage; its animation is used, if it moves",
-        type=bpy.types.Object,
+    camera: Pointer(
+        "Camera",
+        "The camera that took the footage; its animation is used, if it moves",
+        bpy.types.Object,
         poll=lambda _, candidate: candidate.type == "CAMERA",
         update=lambda take, _: camera_chosen(take),
     )
@@ -138,10 +140,10 @@ class KEYMARK_PG_take(bpy.types.PropertyGroup):
     )
     camera_lines: Entries(type=KEYMARK_PG_camera_line)
     camera_findings: Text("Findings", "What the camera was found from, and how sure that is", options=HIDDEN)
-    armature: Group(
-        name="Actor",
-        description="The performer's armature, as Keymark builds it; other characters come in the last step",
-        type=bpy.types.Object,
+    armature: Pointer(
+        "Actor",
+        "The performer's armature, as Keymark builds it; other characters come in the last step",
+        bpy.types.Object,
         # Deleted ones, which other takes still keep, are none.
         poll=lambda take, chosen: is_actor(chosen) and chosen.name in take.id_data.objects,
         update=_armature_chosen,
@@ -169,20 +171,14 @@ class KEYMARK_PG_take(bpy.types.PropertyGroup):
     ignored_regions: Entries(type=KEYMARK_PG_ignored_region)
     active_ignored: Integer("Active Region", "The region without markers that is chosen in the list", min=0)
     follow: Group(type=KEYMARK_PG_follow)
-    keyframe_action: Group(
-        name="Keyframes", description="The Action that holds the keyframes you pose", type=bpy.types.Action
-    )
-    keyframe_count: Integer(
-        "Count", "How many keyframes to propose; 0 for 10 in 100 frames", min=0, soft_max=100
-    )
+    keyframe_action: Pointer("Keyframes", "The Action that holds the keyframes you pose", bpy.types.Action)
+    keyframe_count: Integer("Count", "Keyframes to propose; 0 for 10 in 100 frames", min=0, soft_max=100)
     proposals: Entries(type=KEYMARK_PG_proposal)
     matching: Group(type=KEYMARK_PG_matching)
     contradictions: Entries(type=KEYMARK_PG_contradiction)
     offered: Group(type=KEYMARK_PG_match)
     method: Choice("Method", "How the frames between the keyframes are found", items=METHODS)
-    motion_action: Group(
-        name="Motion", description="The Action that holds the reconstructed motion", type=bpy.types.Action
-    )
+    motion_action: Pointer("Motion", "The Action that holds the reconstructed motion", bpy.types.Action)
     made_from: Text("Made From", "Digest of the keyframes that the motion was made from", options=HIDDEN)
     live_preview: Switch(
         "Live Preview",

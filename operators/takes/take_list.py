@@ -4,47 +4,43 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import bpy
-from bpy.types import ID, Context, Event, PropertyGroup
+from bpy.types import ID, Context, Event, Operator, PropertyGroup
 
 from ...core.errors import InputError
 from ...core.progress import run
 from ..follow.evidence import add_keypoint_file, keypoint_path, scene_evidence
 from ..keyframes.found_properties import known_matches
-from ..shell.base_operator import BaseOperator, actor, footage, idle, of_take, warn
+from ..shell import need
+from ..shell.base_operator import BaseOperator, operator, warn
 from ..shell.fields import HIDDEN, SKIP_SAVE, Switch, Text
 from ..shell.takes import active_take, add_take, footage_of
 
 
-class KEYMARK_OT_add_performer(BaseOperator, bpy.types.Operator):
+@operator("Add Performer", need.footage, need.idle)
+def add_performer(operator: Operator, context: Context, take: PropertyGroup) -> None:
     """Add a take for another performer in the active take's clip, with an actor and markers of their own"""
-
-    bl_label = "Add Performer"
-    requirements = (footage, idle)
-
-    def run(self, context: Context) -> None:
-        """Add a take that shares clip, camera, guesses and keypoint files with the active one."""
-        scene = context.scene
-        source = active_take(scene)
-        clip, camera, guessed = source.clip, source.camera, source.guessed_lens_mm
-        placement = tuple(source.guessed_placement)
-        files = [keypoint_path(entry) for entry in source.follow.files]
-        stem = source.name.partition(" Performer ")[0]
-        number = sum(take.clip == clip for take in scene.keymark.takes) + 1
-        take = add_take(scene, f"{stem} Performer {number}")  # may move `source` in memory
-        take.guessed_lens_mm, take.guessed_placement = guessed, placement
-        take.camera, take.clip = camera, clip
-        for path in files:
-            add_keypoint_file(take, path)
+    scene = context.scene
+    source = active_take(scene)
+    clip, camera, guessed = source.clip, source.camera, source.guessed_lens_mm
+    placement = tuple(source.guessed_placement)
+    files = [keypoint_path(entry) for entry in source.follow.files]
+    stem = source.name.partition(" Performer ")[0]
+    number = sum(take.clip == clip for take in scene.keymark.takes) + 1
+    take = add_take(scene, f"{stem} Performer {number}")  # may move `source` in memory
+    take.guessed_lens_mm, take.guessed_placement = guessed, placement
+    take.camera, take.clip = camera, clip
+    for path in files:
+        add_keypoint_file(take, path)
 
 
-take = of_take(lambda state: True, "There is no take to remove")
+take = need.of_take(lambda state: True, "There is no take to remove")
 
 
 class KEYMARK_OT_remove_take(BaseOperator, bpy.types.Operator):
     """Remove the active take from the list; its clip, camera, actor and Actions stay, unless deleted too"""
 
     bl_label = "Remove Take"
-    requirements = (take, idle)
+    requirements = (take, need.idle)
 
     delete_data: Switch(
         "Delete Its Data",
@@ -61,22 +57,20 @@ class KEYMARK_OT_remove_take(BaseOperator, bpy.types.Operator):
         settings.takes.remove(index)
         settings.active_take = max(0, index - 1)
         if self.delete_data:
-            others = [other for scene in bpy.data.scenes for other in scene.keymark.takes]
-            deleted = own.difference(*(_all_data_of(other) for other in others))
+            kept_takes = [other for scene in bpy.data.scenes for other in scene.keymark.takes]
+            deleted = own.difference(*(_all_data_of(other) for other in kept_takes))
             inner = [block.data for block in deleted if isinstance(block, bpy.types.Object)]
             alone = [block for block in inner if block is not None and block.users == 1]
             bpy.data.batch_remove([*deleted, *alone])
 
 
 def _all_data_of(take: PropertyGroup) -> Iterator[ID]:
-    """Yield a take's data-blocks, and the Actions that its characters got; not the characters themselves."""
     yield from _data_of(take)
     for character in take.characters:
         yield from (result.action for result in character.results if result.action is not None)
 
 
 def _data_of(group: PropertyGroup) -> Iterator[ID]:
-    """Yield the data-blocks that a group of properties points to, nested groups included."""
     for definition in group.bl_rna.properties:
         if definition.type != "POINTER" or definition.identifier == "rna_type":
             continue
@@ -92,7 +86,7 @@ class KEYMARK_OT_save_take(BaseOperator, bpy.types.Operator):
 
     bl_label = "Save Take"
     bl_options = {"REGISTER"}
-    requirements = (footage, actor, idle)
+    requirements = (need.footage, need.actor, need.idle)
 
     directory: Text("Folder", "Where take.json, keyframes.json and the clip are written", subtype="DIR_PATH")
     filter_folder: Switch(default=True, options=HIDDEN)

@@ -41,11 +41,7 @@ class OpenedTake:
 
 
 def read_for_scene(folder: Path, keyframe_file: str = KEYFRAME_FILE) -> OpenedTake:
-    """Read a take of a folder and check it against its clip; the usual keyframe file may be missing.
-
-    Raises:
-        InputError: The take or its clip is unusable.
-    """
+    """Read a take, checked against its clip; InputError if either is unusable, but for usual keyframes."""
     usual = keyframe_file == KEYFRAME_FILE
     description = describe(folder)
     keyframes = None if usual else folder / keyframe_file
@@ -63,7 +59,7 @@ def read_for_scene(folder: Path, keyframe_file: str = KEYFRAME_FILE) -> OpenedTa
 
 
 def open_in_scene(operator: Operator, context: Context, opened: OpenedTake) -> None:
-    """Add a take to the scene, show its footage and its range, and report what a person should know of it.
+    """Add a take to the scene, show its footage and range, and report its notes.
 
     Raises:
         InputError: Blender cannot read the clip; the scene is unchanged.

@@ -16,10 +16,7 @@ from ..shell.takes import VERSION
 
 
 def upgrade_scene(scene: Scene) -> None:
-    """Upgrade a scene's properties to this version, and note which clips are missing.
-
-    The properties of a newer Keymark are left alone, so that nothing of them is lost.
-    """
+    """Upgrade a scene's properties, but a newer Keymark's, and note which clips are missing."""
     settings = scene.keymark
     if scene.library is not None or is_newer(scene):
         return

@@ -90,7 +90,7 @@ keymark.unregister()
     assert done.returncode == 0, done.stderr
     said = [line for line in done.stdout.splitlines() if line.startswith("SAID")]
     assert len(said) == 1
-    assert "needs the Python library scipy" in said[0]
+    assert "needs the Python library cv2" in said[0]
 
 
 @pytest.mark.usefixtures("registered")

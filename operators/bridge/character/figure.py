@@ -95,10 +95,7 @@ def _bones(armature_object: Object, character_map: CharacterMap) -> Iterator[Cha
 def character_picture(
     scene: Scene, armature_object: Object, character_map: CharacterMap, frames: Array, floor_m: float
 ) -> Image | None:
-    """Draw a character that shows its motion in a scene with the footage; None where there is no footage.
-
-    `frames` are the scene frames of the motion; `floor_m` is the floor's height under the character.
-    """
+    """Draw a character at scene frames of its motion over the footage and a floor; None without footage."""
     if scene.active_clip is None or scene.camera is None:
         return None
     footage = Footage(scene, scene.active_clip, scene.camera)

@@ -11,7 +11,6 @@ import numpy as np
 from bpy.types import Action, Constraint, FCurve, Object, PoseBone
 
 from ....core.arrays import Array
-from ....core.errors import InputError
 from ....core.retarget.character import JOINTS
 from ....core.retarget.controls.control_channels import IN_FK, ControlKind, PlannedControl
 from ....core.retarget.maps.character_map import CharacterMap, Switch
@@ -181,16 +180,6 @@ def release(armature_object: Object, releases: Releases) -> None:
     set_properties(armature_object, releases.switches)
 
 
-def require_released(armature_object: Object, releases: Releases, warnings: Sequence[str]) -> None:
-    """Raise InputError where limbs are not the performer's and something holds them that no key switches."""
-    if releases.stuck and warnings:
-        bone, name = releases.stuck[0]
-        raise InputError(
-            f"bone '{bone}' of '{armature_object.name}' is held by its constraint '{name}', whose influence "
-            f"has a driver ({warnings[0]}); mute the constraint, or name its switch in the character map"
-        )
-
-
 def _holding(armature_object: Object, turned: Sequence[str]) -> Iterator[tuple[PoseBone, Constraint]]:
     """Constraints that pose the bones themselves, or let something else than the armature carry them."""
     bones = armature_object.pose.bones
@@ -208,14 +197,14 @@ def _holding(armature_object: Object, turned: Sequence[str]) -> Iterator[tuple[P
     posed = wanted & set().union(*chains.values())
     for bone in bones:
         for constraint in active[bone.name]:
-            others = {target for target, _ in constraint_targets(constraint)} - {armature_object, None}
+            elsewhere = {target for target, _ in constraint_targets(constraint)} - {armature_object, None}
             # Limits of a joint that inverse kinematics bends are those of its solver.
             beside = constraint.type in BESIDE_KEYS and bone.name not in posed
             # What adds to the bone's own keys lets these count as well.
             adds = getattr(constraint, "mix_mode", "REPLACE") != "REPLACE"
             adds = adds or getattr(constraint, "use_offset", False)
             poses = bone.name in wanted and constraint.type not in CARRYING and not adds
-            carries = bone.name in wanted | above and bool(others)
+            carries = bone.name in wanted | above and bool(elsewhere)
             if constraint.type in CHAINS:
                 poses, carries = (bone.name, constraint.name) in chains, False
             if not beside and (poses or carries):

@@ -2,21 +2,19 @@
 
 import shutil
 import tempfile
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
 import bpy
-from bpy.types import Action, Object, Scene, Text
+from bpy.types import Object, Scene, Text
 
 from ....core.errors import InputError, shown
 from ....core.files.fields import listed
 from ....core.files.paths import real_path, regular_file_size
 from ....core.take.conversion_settings import CharacterFile
-from ..actions import curve_digest
-from ..blend_files import check_blend, one_line, showing_scene, write_blend
-from ..export_formats import FORMATS, export_motion
+from ..blend_files import check_blend, one_line, showing_scene
 from .held_controls import constraint_targets
 
 MOST_NAMED = 5  # armatures named in a sentence
@@ -185,9 +183,6 @@ def _members(armature: Object, found: Iterable[Object]) -> list[Object]:
     return [one for one in objects if one in members]
 
 
-# --- The meshes of a character
-
-
 CARRIERS = ("CHILD_OF", "COPY_TRANSFORMS", "ARMATURE")  # by which a bone carries an object as a parent does
 
 
@@ -223,22 +218,3 @@ def is_deformed(mesh_object: Object, armature_object: Object) -> bool:
     deforming = [one.object for one in mesh_object.modifiers if one.type == "ARMATURE"]
     by_parent = mesh_object.parent_type == "ARMATURE" and mesh_object.parent == armature_object
     return by_parent or armature_object in deforming
-
-
-# --- A retargeted character as files
-
-
-def write_character_files(
-    scene: Scene, imported: ImportedCharacter, action: Action, blend: Path, exports: Mapping[str, Path]
-) -> str:
-    """Write a character with its Action into a .blend, and into files by name of `export_formats.FORMATS`.
-
-    A ConversionError may leave half a file at these paths: the caller passes a staging folder. Returned is
-    the SHA-256 of the Action's curves: files of one motion differ, their curves do not.
-    """
-    scene.frame_set(scene.frame_start)
-    write_blend(blend, {scene, *imported.texts}, path_remap="RELATIVE_ALL", fake_user=False)
-    frames = (scene.frame_start, scene.frame_end)
-    for name, path in exports.items():
-        export_motion(scene, imported.armature, action, frames, FORMATS[name], path, along=imported.objects)
-    return curve_digest(imported.armature)

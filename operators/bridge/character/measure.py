@@ -157,9 +157,6 @@ def leading_roles(armature_object: Object, character_map: CharacterMap) -> dict[
     return found
 
 
-# --- Measure a character's motion as Blender shows it, frame by frame, with the limbs in IK and in FK
-
-
 def measure(
     armature_object: Object,
     action: Action,
@@ -277,7 +274,6 @@ def hull_rows(points: Array) -> IndexArray:
 
 @contextmanager
 def _switched(armature_object: Object, action: Action, values: Mapping[Property, Value]) -> Iterator[None]:
-    """Let the keys of custom properties in an Action have other values meanwhile."""
     paths = {property_path(bone, name): float(value) for (bone, name), value in values.items()}
     curves = curves_of(action, armature_object)
     keyed = [(path, curve.keyframe_points) for (path, _), curve in curves.items() if path in paths]

@@ -10,37 +10,17 @@ from mathutils import Matrix
 
 from ....core.arrays import Array
 from ....core.body.rotations import exponential
+from ....core.retarget.controls import control_channels
 from ....core.retarget.controls.control_channels import (
-    ALWAYS_MOVED,
-    IN_FK,
-    NOTHING,
-    RIGID,
     Control,
     ControlKind,
     ControlSpace,
     PlannedControl,
     PosedControls,
-    chosen,
-    constant_turn,
-    find_spaces,
-    limb_bones,
-    ordered_controls,
-    rigid_offset,
 )
 from ....core.retarget.controls.control_motion import SHORTEST_POLE, PoleSetting, pole_offset
 from ....core.retarget.maps.character_map import CharacterMap
-from .held_controls import (
-    BONE_PATH,
-    Releases,
-    active_constraints,
-    drivers,
-    find_releases,
-    keyed_values,
-    posing,
-    read_poses,
-    release,
-    set_properties,
-)
+from . import held_controls
 from .write_retargeted import ONE, scaled_bones
 
 STILL, MOVED = 3, 4  # poses at random, without and with locations
@@ -59,7 +39,7 @@ class ProbedControls:
     poles: Mapping[str, PoleSetting]  # by pole where it belongs
     size: float  # the character's, in the armature's units
     notes: tuple[str, ...]
-    releases: Releases  # what lets the controls follow their keys
+    releases: held_controls.Releases  # what lets the controls follow their keys
 
 
 def probe_controls(
@@ -69,24 +49,24 @@ def probe_controls(
     roles = [name for role in character_map.roles for name in character_map.bones(role)]
     size = float(np.ptp(_rests(armature_object, roles)[:, :3, 3], axis=0).max())
     notes: list[str] = []
-    in_fk = keyed_values(character_map, lambda _, switch: switch.fk)
+    in_fk = held_controls.keyed_values(character_map, lambda _, switch: switch.fk)
     bones = armature_object.pose.bones
     # Location of a control that counts as one, in sizes of the character.
     displaced = {plan.name for plan in planned if bones[plan.name].location.length > 1e-5 * size}
-    with posing(armature_object, list(in_fk)):
-        set_properties(armature_object, in_fk)
-        releases = find_releases(armature_object, character_map, planned)
-    with posing(armature_object, [*in_fk, *releases.switches]):
-        set_properties(armature_object, in_fk)
-        release(armature_object, releases)
+    with held_controls.posing(armature_object, list(in_fk)):
+        held_controls.set_properties(armature_object, in_fk)
+        releases = held_controls.find_releases(armature_object, character_map, planned)
+    with held_controls.posing(armature_object, [*in_fk, *releases.switches]):
+        held_controls.set_properties(armature_object, in_fk)
+        held_controls.release(armature_object, releases)
         for name in scaled_bones(armature_object, [plan.name for plan in planned]):
             bones[name].scale = ONE
         posed, followed = _posed_at_random(armature_object, planned, size)
-    kept = _steady(armature_object, planned, find_spaces(posed), notes)
-    posed, followed = chosen(posed, kept), followed[:, kept]
+    kept = _steady(armature_object, planned, control_channels.find_spaces(posed), notes)
+    posed, followed = control_channels.chosen(posed, kept), followed[:, kept]
     planned = [planned[index] for index in kept]
-    spaces = _on_goals(armature_object, planned, find_spaces(posed))
-    controls = ordered_controls(
+    spaces = _on_goals(armature_object, planned, control_channels.find_spaces(posed))
+    controls = control_channels.ordered_controls(
         [
             Control(
                 plan,
@@ -100,7 +80,9 @@ def probe_controls(
     )
     offsets = _offsets(armature_object, posed, followed, planned, size, notes)
     poles = {
-        plan.name: _pole_setting(armature_object, [*limb_bones(character_map, str(plan.limb)), plan.name])
+        plan.name: _pole_setting(
+            armature_object, [*control_channels.limb_bones(character_map, str(plan.limb)), plan.name]
+        )
         for plan in planned
         if plan.kind is ControlKind.POLE
     }
@@ -122,7 +104,7 @@ def _posed_at_random(
             matrices[:, :3, 3] = rng.normal(0.0, 0.1 * size, (count, 3))
         for name, matrix in zip(names, matrices, strict=True):  # in the rotation modes that they have
             armature_object.pose.bones[name].matrix_basis = Matrix(matrix)
-        own, poses = read_poses(armature_object, [*names, *(plan.bone for plan in planned)])
+        own, poses = held_controls.read_poses(armature_object, [*names, *(plan.bone for plan in planned)])
         channels.append(own[:count])
         shown.append(poses)
     both = np.array(shown)
@@ -148,15 +130,15 @@ def _offsets(
     for index, plan in enumerate(planned):
         control, bone = _rests(armature_object, [plan.name, plan.bone])
         offsets[plan.name] = np.linalg.inv(control) @ bone
-        if plan.kind not in IN_FK:
+        if plan.kind not in control_channels.IN_FK:
             continue
         # Locations of other controls may stretch what lies between: only the first poses count.
-        offset, turn_rad, distance = rigid_offset(
+        offset, turn_rad, distance = control_channels.rigid_offset(
             posed.poses[: posed.still, index], bones[: posed.still, index]
         )
         if turn_rad <= FOLLOWS_RAD and distance <= FOLLOWS * size:
             offsets[plan.name] = offset
-        _, own_rad = constant_turn(posed.poses[: posed.still, index, :3, :3])
+        _, own_rad = control_channels.constant_turn(posed.poses[: posed.still, index, :3, :3])
         # Three quarters of its own turns a bone may miss: those of Rigify's spines follow two by half.
         if turn_rad > max(NOTICEABLE_RAD, 0.75 * own_rad) or distance > NOTICEABLE * size:
             notes.append(
@@ -182,15 +164,12 @@ def _steady(
     spaces: Sequence[ControlSpace],
     notes: list[str],
 ) -> list[int]:
-    """Indices of the controls whose rotations act in a space of their own, or that constraints keep from it.
-
-    The others hang on something that moves and is not keyed, of which sentences are added.
-    """
-    paths = (BONE_PATH.match(driver.data_path) for driver in drivers(armature_object))
+    """Indices of controls that turn in a space of their own, or are constrained; sentences on all others."""
+    paths = (held_controls.BONE_PATH.match(one.data_path) for one in held_controls.drivers(armature_object))
     driven = {bpy.utils.unescape_identifier(path[1]) for path in paths if path}
     kept = []
     for index, (plan, space) in enumerate(zip(planned, spaces, strict=True)):
-        own = plan.name in driven or active_constraints(armature_object.pose.bones[plan.name])
+        own = plan.name in driven or held_controls.active_constraints(armature_object.pose.bones[plan.name])
         if plan.kind is ControlKind.POLE or own or space.residual_rad < NOTICEABLE_RAD:
             kept.append(index)
         else:
@@ -206,9 +185,11 @@ def _on_goals(
 ) -> list[ControlSpace]:
     """The spaces with fingers on the goals of hands that are keyed by these alone: they were probed in FK."""
     found = list(spaces)
-    turning = {plan.bone for plan in planned if plan.kind in IN_FK}
+    turning = {plan.bone for plan in planned if plan.kind in control_channels.IN_FK}
     for index, (plan, space) in enumerate(zip(planned, spaces, strict=True)):
-        on_finger = space.turner != NOTHING and planned[space.turner].kind is ControlKind.FINGER
+        on_finger = (
+            space.turner != control_channels.NOTHING and planned[space.turner].kind is ControlKind.FINGER
+        )
         if plan.kind is not ControlKind.FINGER or on_finger:
             continue
         for at, goal in enumerate(planned):
@@ -223,9 +204,9 @@ def _on_goals(
 def _placed(armature_object: Object, control: Control, controls: Sequence[Control], size: float) -> Control:
     """A control that random poses did not place: where it rests on what turns it, else where it is."""
     space = control.space
-    if control.plan.kind in ALWAYS_MOVED or space.residual < RIGID * size:
+    if control.plan.kind in control_channels.ALWAYS_MOVED or space.residual < control_channels.RIGID * size:
         return control
-    if space.turner != NOTHING and space.residual_rad < NOTICEABLE_RAD:
+    if space.turner != control_channels.NOTHING and space.residual_rad < NOTICEABLE_RAD:
         turner, own = _rests(armature_object, [controls[space.turner].name, control.name])
         return replace(control, space=space.placed_by_turner((np.linalg.inv(turner) @ own)[:3, 3]))
     return replace(control, space=replace(space, axes=np.zeros((3, 3))))

@@ -41,35 +41,21 @@ from ..result_files import set_look
 from ..rig import present_frames, read_rig, read_values, shown_postures
 from ..rotation_modes import ALL_PATHS, bone_path, rotation_values
 from ..scene_frames import scene_frames
-from .held_controls import Value, keyed_values, require_released, switch_values
+from . import write_retargeted
+from .held_controls import Value, keyed_values, switch_values
 from .measure import measure, mesh_soles
 from .probe_controls import ProbedControls, probe_controls
 from .read_character import read_character
-from .write_retargeted import (
-    RetargetedKeys,
-    carriers,
-    channel_notes,
-    placement_keys,
-    require_placeable,
-    require_placed_hips,
-    scaled_bones,
-    write_keys,
-)
+from .write_retargeted import RetargetedKeys, write_keys
 
 READ, SEEN = 0.7, 0.8  # shares of the job at which the curves are read, and their postures known
 
 
 def read_source(armature_object: Object, action: Action) -> Job[tuple[SegmentMotion, Array]]:
-    """The motion that an Action holds for an actor, and its scene frames (F,); nothing in Blender is changed.
-
-    Hands and feet are as keyed; those without keys as the motion alone would turn them. InputError where the
-    armature is not an actor's, or the Action holds no motion of it.
-    """
+    """An actor's motion in an Action, hands and feet as keyed or else natural, and its frames (F,)."""
     body, curves = read_body(armature_object), curves_of(action, armature_object)
     paths = {path for (path, _), curve in curves.items() if not curve.mute and not curve.is_empty}
-    keyed = tuple(
-        name for name in EXTREMITIES if any(bone_path(name, channel) in paths for channel in ALL_PATHS)
-    )
+    keyed = tuple(name for name in EXTREMITIES if any(bone_path(name, one) in paths for one in ALL_PATHS))
     rig = read_rig(armature_object, body, keyed)
     scene = next(iter(armature_object.users_scene), bpy.context.scene)
     rate = scene.render.fps / scene.render.fps_base
@@ -127,9 +113,6 @@ def show_result(scene: Scene, blend: Path | None, motion: Motion, notes: list[st
     return frames
 
 
-# --- Retarget a motion to a character: its map is completed, the motion solved, keyed and measured
-
-
 def complete_map(
     armature_object: Object, character: Character, character_map: CharacterMap
 ) -> tuple[CharacterMap, tuple[str, ...]]:
@@ -161,9 +144,6 @@ def complete_map(
     if not completed.soles:
         completed = replace(completed, soles=mesh_soles(armature_object, character, completed))
     return completed, notes
-
-
-# --- Retarget a motion to a character
 
 
 SOLVED, PROBED, FIRST = 0.25, 0.3, 0.8
@@ -225,7 +205,7 @@ def retarget(
     check_map(character_map, character)
     there = object_space(armature_object)
     if options.place is Placement.PERFORMER:
-        require_placeable(armature_object)
+        write_retargeted.require_placeable(armature_object)
     character_map, lacking = complete_map(armature_object, character, character_map)
     unknown = [role for role in FINGER_ROLES if role in character_map.roles and role not in source.fingers]
     alone = tuple(dict.fromkeys((*character_map.left_alone, *unknown)))
@@ -235,7 +215,7 @@ def retarget(
     planned = planned_controls(character_map, options, character)
     planned = tuple(plan for plan in planned if plan.kind is not ControlKind.ROOT or motion.root is not None)
     probed = probe_controls(armature_object, character_map, planned)
-    above = carriers(armature_object, scene_frames)
+    above = write_retargeted.carriers(armature_object, scene_frames)
     performance = _Performance(
         armature_object, character, character_map, source, scene_frames, options, above, probed
     )
@@ -250,9 +230,16 @@ def retarget(
         motion = run(solve_motion(character, character_map, source, options, there, lifts))
         keys, controls, found = yield from stretch(performance.keyed(motion), start, end)
     warnings = warnings_of(found.quality.to_dict(), motion.size)
-    require_released(armature_object, probed.releases, warnings)
+    if probed.releases.stuck and warnings:
+        bone, name = probed.releases.stuck[0]
+        raise InputError(
+            f"bone '{bone}' of '{armature_object.name}' is held by its constraint '{name}', whose influence "
+            f"has a driver ({warnings[0]}); mute the constraint, or name its switch in the character map"
+        )
     notes = (*motion.notes, *lacking, *probed.notes)
-    notes += channel_notes(armature_object, keys.controls, controls, keys.scaled, probed.releases)
+    notes += write_retargeted.channel_notes(
+        armature_object, keys.controls, controls, keys.scaled, probed.releases
+    )
     if len(above) > 1:
         how = "its place is keyed against it on every frame" if keys.placement else "the motion rides on it"
         carrier = armature_object.parent.name
@@ -287,7 +274,7 @@ class _Performance:
         yield Progress("Bringing the motion onto the controls", 0.0)
         how = (probed.controls, probed.offsets, probed.poles, probed.size)
         controls = on_controls(character, character_map, motion, *how)
-        require_placed_hips(armature_object, controls)
+        write_retargeted.require_placed_hips(armature_object, controls)
         yield Progress("Finding the keys", 0.0)
         if options.tolerance_m is None:
             keyed = dense_controls(controls, rotation_values)
@@ -309,8 +296,8 @@ class _Performance:
             frames,
             keyed,
             keyed_values(character_map, shown) | dict(probed.releases.switches),
-            placement_keys(armature_object, self.above, motion.to_world) if placed else (),
-            scaled_bones(armature_object, (one.control.name for one in keyed)),
+            write_retargeted.placement_keys(armature_object, self.above, motion.to_world) if placed else (),
+            write_retargeted.scaled_bones(armature_object, (one.control.name for one in keyed)),
             probed.releases.constraints,
         )
         yield Progress("Measuring the character", REDUCED)

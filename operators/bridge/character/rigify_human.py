@@ -3,7 +3,6 @@
 from collections.abc import Mapping
 from functools import cache
 from importlib.util import find_spec
-from typing import TYPE_CHECKING
 
 import bpy
 import numpy as np
@@ -11,10 +10,8 @@ from bpy.types import Object
 from mathutils import Matrix
 
 from ....core.arrays import Array
+from ....core.body.human_mesh import HumanMesh, part_ends
 from ....core.body.skeleton import SIDES
-
-if TYPE_CHECKING:
-    from ....core.body.human_mesh import HumanMesh
 
 ADDON = "rigify"
 SPINE = {
@@ -47,10 +44,10 @@ def enable_rigify() -> None:
 
 
 def add_rigify_human(stature_m: float | None = None) -> Object:
-    """Add the basic human at the world's origin and generate its rig, which becomes the active object.
+    """Add and generate the basic human, in Object Mode, Rigify enabled.
 
-    Blender must be in Object Mode, with Rigify enabled; the stature is Rigify's own by default. RuntimeError
-    where Rigify could not: what it had made is gone again.
+    Raises:
+        RuntimeError: Rigify cannot; nothing is left of it.
     """
     before = set(bpy.data.objects)
     try:
@@ -73,9 +70,6 @@ def add_rigify_human(stature_m: float | None = None) -> Object:
 
 
 def _add_body(rig: Object) -> None:
-    """Give the rig the shipped human skin, which its deforming bones move smoothly."""
-    from ....core.body.human_mesh import HumanMesh, part_ends
-
     human = HumanMesh.read()
     joints = _joints(rig)
     vertices = human.fitted(joints)
@@ -102,7 +96,7 @@ def _add_body(rig: Object) -> None:
 
 
 def skinned(
-    armature_object: Object, name: str, vertices: Array, human: "HumanMesh", weights: Mapping[str, Array]
+    armature_object: Object, name: str, vertices: Array, human: HumanMesh, weights: Mapping[str, Array]
 ) -> Object:
     """The human skin at vertices (N, 3) on an armature, whose bones move them by weights (N,)."""
     mesh = bpy.data.meshes.new(name)

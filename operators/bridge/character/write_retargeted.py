@@ -20,16 +20,8 @@ from ..actor_bones import evaluated
 from ..keys import ensure_fcurve, write_column, write_linear_keys
 from ..rotation_modes import ALL_PATHS, bone_path, rotation_path, rotation_values
 from ..scene_frames import at_scene_frame
-from .held_controls import (
-    CARRYING,
-    Held,
-    Property,
-    Releases,
-    Value,
-    active_constraints,
-    drivers,
-    property_path,
-)
+from . import held_controls
+from .held_controls import Held, Property, Releases, Value, active_constraints, drivers
 
 ASTRAY = 0.003  # distance of a control from its place that is worth a note, in sizes of the character
 LEFT_BEHIND = 0.03  # the same of hips that is no longer the performer's motion
@@ -64,7 +56,7 @@ def channel_notes(
         turned = one.rotation is not None and any(bone.lock_rotation)
         moved = one.location is not None and any(bone.lock_location)
         constrained = name not in releases.bones and any(
-            constraint.type not in CARRYING for constraint in active_constraints(bone)
+            constraint.type not in held_controls.CARRYING for constraint in active_constraints(bone)
         )
         states = (("driven", driven & channels), ("constrained", constrained), ("locked", turned or moved))
         for why, so in states:
@@ -227,7 +219,7 @@ def write_keys(keys: RetargetedKeys, armature_object: Object, action: Action) ->
                     write_column(fcurve, frames, held, index)
                     made.append((path, index))
     for (bone, name), value in keys.properties.items():
-        write(property_path(bone, name), 0, bone or "Properties", np.array([float(value)]))
+        write(held_controls.property_path(bone, name), 0, bone or "Properties", np.array([float(value)]))
     for name in keys.scaled:
         path = bone_path(name, "scale")
         for index, value in enumerate(ONE):
@@ -244,7 +236,6 @@ def write_keys(keys: RetargetedKeys, armature_object: Object, action: Action) ->
 
 
 def _made(action: Action) -> dict[str, list[tuple[str, int]]]:
-    """Data paths and indices by slot; none where the property is not Keymark's."""
     try:
         value = json.loads(action.get(MADE_BY_KEYMARK, "{}"))
     except (TypeError, ValueError):

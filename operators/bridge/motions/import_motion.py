@@ -43,11 +43,8 @@ def import_motion(
     """Import an animated armature into a scene, which gets the motion's rate, and recognize its bones.
 
     A BVH's object is one of its ROOTs; `action_name` is one of several Actions. The motion's keys count as
-    Keymark's own, so that those that a person sets later are known. An armature in other units is scaled to a
-    person's size.
-
-    Raises:
-        InputError: Blender cannot read it, it has no armature of a person, no Action, or no usable rate.
+    Keymark's own: those that a person sets later are known. It is scaled to a person's size. InputError where
+    Blender cannot read it, or it has no armature of a person, no Action, or no usable rate.
     """
     suffix = file.path.suffix.lower()
     if suffix not in ARMATURE_ENDINGS:
@@ -77,8 +74,11 @@ def import_motion(
         body = RestBody.of(read_character(armature), chosen.character_map)
     except InputError as error:
         raise InputError(f"{file.path}: {error}") from error
-    if suffix == ".bvh":
-        _stand_up(armature, body)
+    up = unit(np.array(armature.matrix_world, dtype=np.float64)[:3, :3] @ body.stance.T @ [0.0, 0.0, 1.0])
+    if suffix == ".bvh" and up[2] < np.cos(np.radians(45.0)):  # which tells not whether Y is up, or as here Z
+        upright = rotations.smallest(up, np.array([0.0, 0.0, 1.0]))
+        armature.matrix_world = Matrix(upright).to_4x4() @ armature.matrix_world
+        bpy.context.view_layer.update()
     leg_m = body.leg_m
     meters = min(UNITS, key=lambda meters: abs(np.log(leg_m * meters / 0.85)))
     if not SHORTEST_LEG_M <= leg_m <= LONGEST_LEG_M and meters != 1.0:
@@ -95,26 +95,10 @@ def import_motion(
     return replace(imported, notes=(*notes, *imported.notes)), chosen
 
 
-def _stand_up(armature: Object, body: RestBody) -> None:
-    """Turn an armature that lies at rest upright: a BVH does not tell which axis is up, Y or as here Z."""
-    turn = np.array(armature.matrix_world, dtype=np.float64)[:3, :3]
-    up = unit(turn @ body.stance.T @ [0.0, 0.0, 1.0])
-    if up[2] < np.cos(np.radians(45.0)):
-        upright = rotations.smallest(up, np.array([0.0, 0.0, 1.0]))
-        armature.matrix_world = Matrix(upright).to_4x4() @ armature.matrix_world
-        bpy.context.view_layer.update()
-
-
 def load_motion(
     file: CharacterFile, scene: Scene, maps: Sequence[Path] = (), action_name: str | None = None
 ) -> tuple[Object, tuple[str, ...]]:
-    """Bring an animated armature into a scene, which keeps its rate and range; its object, and notes.
-
-    The motion begins at the scene's first frame and takes as long as in the file.
-
-    Raises:
-        InputError: See `import_motion`; nothing is added then.
-    """
+    """Bring an armature into a scene, from whose first frame on it moves as long as in the file; notes."""
     before = {block.as_pointer() for block in bpy.data.user_map()}
     meanwhile = bpy.data.scenes.new("Motion")
     try:
@@ -136,11 +120,7 @@ def load_motion(
 
 
 def armature_reference(path: Path, subject: str | None, maps: Sequence[Path] = ()) -> ReferenceMotion:
-    """The joints of a file's animated armature as a reference motion; the scene is as before afterwards.
-
-    Raises:
-        InputError: See `import_motion`.
-    """
+    """The joints of a file's animated armature as a reference motion, by `import_motion`; the scene stays."""
     with own_scene("Motion") as scene, showing_scene(scene):
         imported, chosen = import_motion(CharacterFile(path, subject), scene, maps)
         armature = imported.armature
@@ -163,10 +143,7 @@ def _retime(curves: Curves, first: float, factor: float, start: float) -> None:
 def _action(
     path: Path, armature: Object, added: Sequence[Action], wanted: str | None
 ) -> tuple[Action, tuple[str, ...]]:
-    """The wanted Action of an armature, or else its own, that of its first strip or the file's first; notes.
-
-    It is assigned, and strips are muted.
-    """
+    """Assign the wanted Action, else its own, its first strip's or the file's first; mute strips; notes."""
     data = armature.animation_data_create()
     strips = (strip.action for track in data.nla_tracks for strip in track.strips)
     moving = [one for one in added if _moves(one, armature)]
@@ -185,7 +162,6 @@ def _action(
 
 
 def _moves(action: Action, armature: Object) -> bool:
-    """Whether an Action has curves of an armature's bones."""
     curves = [path for path, _ in curves_of(action, armature)]
     found = [match for match in map(BONE_PATH.match, curves) if match]
     bones = armature.pose.bones
@@ -210,7 +186,6 @@ def _usd_rate(path: Path) -> float:
 
 
 def _blend_rate(path: Path) -> float:
-    """The rate of the first scene of a .blend."""
     with bpy.data.libraries.load(str(real_path(path)), link=True) as (inside, wanted):
         wanted.scenes = list(inside.scenes)[:1]
     rates = [scene.render.fps / scene.render.fps_base for scene in wanted.scenes if scene is not None]

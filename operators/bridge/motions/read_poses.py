@@ -77,12 +77,7 @@ def _bone_curves(armature_object: Object, action: Action) -> list[FCurve]:
 def posed_frames(
     armature_object: Object, action: Action, bones: Iterable[str], frames: Array
 ) -> tuple[int, ...]:
-    """Indices of the frames (F,) that a person posed, by the keys of some bones.
-
-    They have a key that is neither Keymark's nor of the kind of most others: one of the type Keyframe among
-    generated ones, or one that Keymark made and a person changed. Where most frames have one, the motion
-    itself was keyed so and nobody posed it.
-    """
+    """Indices of the frames (F,) that a person posed: keyed unlike most, or by a changed key of Keymark's."""
     paths = {bone_path(bone, channel) for bone in bones for channel in (*ALL_PATHS, "location")}
     curves = [curve for curve in _bone_curves(armature_object, action) if curve.data_path in paths]
     own: set[int] = set()

@@ -21,10 +21,7 @@ def resident_bytes() -> int | None:
 
 
 def usual_workers(most: int) -> int:
-    """A worker for each processor that this process may use, as far as each gets the memory it may need.
-
-    The memory is the machine's, or less where a container limits it.
-    """
+    """A worker for each processor that this process may use, as far as each gets the memory it may need."""
     memory = [most * 1.5 * 2**30]
     with suppress(OSError, ValueError, AttributeError):
         memory.append(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"))

@@ -13,17 +13,9 @@ from ....core.errors import KeymarkError, pluralize
 from ....core.files.json_file import write_atomically
 from ....core.files.paths import absolute_path
 from ....core.report.batch_page import current_record, relative_path, summary_page
+from ....core.shoot import outcomes
 from ....core.shoot.discovery import Shoot
-from ....core.shoot.outcomes import (
-    CONVERSION,
-    Failure,
-    Outcome,
-    Status,
-    read_outcome,
-    remove_failure,
-    remove_failures_of_deleted_takes,
-    write_failure,
-)
+from ....core.shoot.outcomes import CONVERSION, Failure, Outcome, Status
 from ....core.take.conversion_record import RECORD_FILE as RECORD
 from ....core.take.conversion_record import find_record
 from ..console import Console, terminal_columns, wrapped
@@ -68,10 +60,7 @@ def summary_line(outcome: Outcome, output: Path) -> dict[str, Any]:
 
 
 def share_done(done: Sequence[float], frames: Sequence[int | None]) -> float:
-    """The share of all work that is done, by that of each take, from 0 to 1, and its length.
-
-    A take of unknown length, None, counts as the mean of those known.
-    """
+    """The share of all work that is done, by that of each take and its length, the others' mean if None."""
     known = [count for count in frames if count is not None]
     mean = sum(known) / len(known) if known else 1.0
     lengths = [mean if count is None else count for count in frames]
@@ -89,7 +78,7 @@ class BatchOutcomes:
     def __init__(self, shoot: Shoot, output: Path, jobs: Sequence[Job], console: Console) -> None:
         """Begin with the outcomes that the folder has of all takes."""
         self.shoot, self.output, self.console = shoot, output, console
-        self._outcomes = {take.name: read_outcome(take, output) for take in shoot.takes}
+        self._outcomes = {take.name: outcomes.read_outcome(take, output) for take in shoot.takes}
         self._done = {job.take.name: 0.0 for job in jobs}
         """Of each take that is converted here, in the order of the jobs: how much of it is done, 0 to 1."""
         for name in self._done:
@@ -99,7 +88,7 @@ class BatchOutcomes:
         self.files: tuple[Path, ...] = ()
         self.write_errors: dict[str, None] = {}
         """Sentences on summaries and failures that could not be written, each once."""
-        remove_failures_of_deleted_takes(output, shoot)
+        outcomes.remove_failures_of_deleted_takes(output, shoot)
         self._show_progress()
 
     @property
@@ -127,11 +116,13 @@ class BatchOutcomes:
         self._done[name] = 1.0
         if done.result == FAILED:
             try:
-                write_failure(self.output, Failure(name, done.error or "failed", done.kind or CONVERSION))
+                outcomes.write_failure(
+                    self.output, Failure(name, done.error or "failed", done.kind or CONVERSION)
+                )
             except KeymarkError as error:
                 self.write_errors[str(error)] = None
         else:
-            remove_failure(self.output, name)
+            outcomes.remove_failure(self.output, name)
         outcome = Outcome(name, job.folder, Status(done.result), record, done.error, done.seconds)
         self._outcomes[name] = outcome
         whole = len(self._done)
@@ -155,7 +146,7 @@ class BatchOutcomes:
         # Another machine may have finished, and written its own summary, while this one was written: without
         # a second look the summary that stays would lack the last take of that machine.
         while True:
-            found = {take.name: read_outcome(take, self.output) for take in elsewhere}
+            found = {take.name: outcomes.read_outcome(take, self.output) for take in elsewhere}
             shown = [(outcome.status, outcome.error, outcome.record) for outcome in found.values()]
             if shown == before:
                 return

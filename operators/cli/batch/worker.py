@@ -79,11 +79,7 @@ class _JobConsole(Console):
 
 
 class _Sender:
-    """Standard output for messages alone: everything else written there from now on is discarded.
-
-    It remembers that SIGTERM has arrived, for the code that it interrupts may swallow the exception: Blender
-    turns a KeyboardInterrupt that arrives while it runs an exporter into an error of its own.
-    """
+    """Standard output for messages alone; it remembers SIGTERM, whose exception Blender may swallow."""
 
     def __init__(self) -> None:
         sys.stdout.flush()

@@ -71,10 +71,7 @@ class WorkerPool:
                     worker.wait()
 
     def _employ(self, most: int) -> None:
-        """Give idle workers the next jobs, and start workers for those that are left.
-
-        Jobs that other processes hold come last, and wait.
-        """
+        """Give idle workers the next jobs, those that others hold last, and start workers for those left."""
         for worker, current in self._workers.items():
             if current is None and worker.started and self._queue:
                 free = (each for each in self._queue if not each.busy_answers)
@@ -97,7 +94,6 @@ class WorkerPool:
             raise ConversionError(f"no worker process starts: {self._start_errors[-1]}")
 
     def _take_event(self) -> None:
-        """Wait for the next event, and give up the workers that have been silent for too long."""
         moments = [worker.deadline for worker in self._workers]
         if any(worker.started and job is None for worker, job in self._workers.items()):
             moments += [queued.not_before for queued in self._queue]
@@ -148,7 +144,6 @@ class WorkerPool:
         self._queue.append(queued)
 
     def _lose(self, worker: WorkerProcess, how: str) -> None:
-        """Do without a worker that has ended or was given up; retry its job once."""
         queued = self._workers.pop(worker)
         if not worker.started:
             self._start_errors.append(worker.last_line() or how)
@@ -168,13 +163,13 @@ class WorkerPool:
     @contextmanager
     def _interruptible(self) -> Iterator[None]:
         """Take SIGINT and SIGTERM as the next event, and kill the workers on a second one."""
-        asked = False
+        interrupted = False
 
         def interrupt(_signal: int, _frame: FrameType | None) -> None:
-            nonlocal asked
-            for worker in list(self._workers) if asked else ():
+            nonlocal interrupted
+            for worker in list(self._workers) if interrupted else ():
                 worker.process.kill()
-            asked = True
+            interrupted = True
             self._events.put(None)
 
         before = {}

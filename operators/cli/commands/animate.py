@@ -16,15 +16,7 @@ from ....core.video.header import TURNS, can_turn, write_turned
 from ..console import Console, UsageError, argument, command
 from ..conversion.character_result import FORMAT, check_exporters, export_formats
 from ..conversion.convert_take import conversion_summary, conversion_text, convert_take
-from ..options import (
-    HANDS,
-    HEIGHT,
-    PICTURES,
-    character_options,
-    given_settings,
-    output,
-    setting_options,
-)
+from ..options import HANDS, HEIGHT, PICTURES, character_options, given_settings, output, setting_options
 
 
 @command(
@@ -60,7 +52,7 @@ def animate_command(arguments: argparse.Namespace, console: Console) -> None:
     formats = export_formats(arguments.format)
     if formats and arguments.character is None:
         raise UsageError("--format is given without --character, of which it writes further files")
-    said = {"actor": {"height_m": height_m or USUAL_HEIGHT_M}, "keyframes": EVERY_LIBRARY}
+    fields = {"actor": {"height_m": height_m or USUAL_HEIGHT_M}, "keyframes": EVERY_LIBRARY}
     clip: Path = arguments.clip
     if clip.is_dir() and (clip / "take.json").is_file():
         raise InputError(f"{clip}: is a take, which keymark convert is for; name a clip")
@@ -68,7 +60,7 @@ def animate_command(arguments: argparse.Namespace, console: Console) -> None:
         check_exporters(formats)
 
     def convert(footage: Path, notes: tuple[str, ...] = (), keep: Keep = keep_nothing) -> Conversion:
-        description = describe(footage, said, ASSUMED if height_m is None else HEIGHT)
+        description = describe(footage, fields, ASSUMED if height_m is None else HEIGHT)
         settings = given_settings(arguments).with_defaults(description.settings)
         debug: bool = arguments.debug
         return convert_take(description, arguments.output, console, settings, debug, formats, keep, notes)

@@ -103,7 +103,6 @@ def batch_command(arguments: argparse.Namespace, console: Console) -> None:
 
 
 def _plan(arguments: argparse.Namespace) -> tuple[Shoot, list[ShootTake], ConversionSettings]:
-    """The whole shoot, its takes to convert, and the settings of those that have none of their own."""
     found = re.fullmatch(
         r"(\d{1,7})/(\d{1,7})", ("1/1" if arguments.part is None else arguments.part).strip(), re.ASCII
     )

@@ -56,9 +56,7 @@ def character_command(arguments: argparse.Namespace, console: Console) -> None:
     for title, sentences in (("Doubtful:", chosen.doubts), ("Notes:", notes)):
         if sentences:
             lines.append(title)
-            lines += [
-                line for sentence in sentences for line in wrapped(f"{sentence.rstrip('.')}.", 2, columns)
-            ]
+            lines += [line for each in sentences for line in wrapped(f"{each.rstrip('.')}.", 2, columns)]
     if arguments.output is not None:
         write_character_map(arguments.output, character_map)
         result["files"] = [str(arguments.output)]

@@ -147,7 +147,6 @@ def _table(
 
 
 def _marked(check: TakeCheck) -> tuple[str, ...]:
-    """All sentences on a take, marked by whether they stop its conversion."""
     stopping = [f"{STOPS} {sentence}" for sentence in check.problems]
     return (*stopping, *(f"- {sentence}" for sentence in check.warnings))
 

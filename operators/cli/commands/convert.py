@@ -5,8 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from ....core.shoot.discovery import take_path
-from ....core.take.conversion_settings import ConversionSettings
-from ....core.take.description import Description, describe, effective_settings
+from ....core.take.description import describe, effective_settings
 from ....core.take.evidence import KEYPOINTS
 from ..console import Console, UsageError, argument, command
 from ..conversion.convert_take import conversion_summary, conversion_text, convert_take
@@ -29,27 +28,20 @@ def convert_command(arguments: argparse.Namespace, console: Console) -> None:
     """
     console.stage("Reading the take")
     description = describe(take_path(arguments.take))
-    settings = _settings(arguments, description)
-    conversion = convert_take(description, arguments.output, console, settings, arguments.debug)
-    console.finish(conversion_summary(conversion), conversion_text(conversion))
-    console.warn(conversion.warnings)
-
-
-def _settings(arguments: argparse.Namespace, description: Description) -> ConversionSettings:
-    """The settings of the command line, and else of the take.
-
-    Where keyframes are to be found by the command line's word, only posed ones that it names count beside.
-    """
-    given = given_settings(arguments)
-    settings = given.with_defaults(effective_settings(description))
-    if given.floor_m is not None and settings.library is None:
+    own = given_settings(arguments)
+    settings = own.with_defaults(effective_settings(description))
+    if own.floor_m is not None and settings.library is None:
         raise UsageError(
             "--floor is given without --keyframes auto or --library; the floor is asked for only where "
             "keyframes are found"
         )
-    if given.keypoints and settings.evidence is not None and KEYPOINTS not in settings.evidence:
+    if own.keypoints and settings.evidence is not None and KEYPOINTS not in settings.evidence:
         raise UsageError(
             f"--keypoints is given, but the evidence is {', '.join(settings.evidence)} alone; name "
             f"{KEYPOINTS} in --evidence"
         )
-    return settings if given.library is None else replace(settings, keyframes=given.keyframes)
+    if own.library is not None:  # only posed ones that the command line names stand beside those found
+        settings = replace(settings, keyframes=own.keyframes)
+    conversion = convert_take(description, arguments.output, console, settings, arguments.debug)
+    console.finish(conversion_summary(conversion), conversion_text(conversion))
+    console.warn(conversion.warnings)

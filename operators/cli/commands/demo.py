@@ -5,7 +5,6 @@ import shutil
 import subprocess
 import sys
 import tempfile
-from collections.abc import Mapping
 from pathlib import Path
 
 from ....core.errors import ConversionError
@@ -48,9 +47,7 @@ def demo_command(arguments: argparse.Namespace, console: Console) -> None:
     demo = example_folder(AEROBIC)
     require_blender("the demonstration needs")
     with tempfile.TemporaryDirectory() as folder:
-        console.announce(
-            "The demonstration, twice four seconds of video, takes five steps and about a minute."
-        )
+        console.announce("The demonstration, twice four seconds of video, takes five steps, about a minute.")
         console.announce("Step 1 of 5: a character is generated, Rigify's basic human.")
         console.stage("Generating a character")
         character, missing = None, ""
@@ -80,10 +77,8 @@ def demo_command(arguments: argparse.Namespace, console: Console) -> None:
         )
         fields = {"actor": {"height_m": GREETING_M}, "keyframes": EVERY_LIBRARY}
         description = describe(bare, fields, HEIGHT)
-        bare_settings = description.settings.with_defaults(ConversionSettings(character=character))
-        animated = convert_take(
-            description, output / ANIMATED_FOLDER, console, bare_settings, arguments.debug
-        )
+        own = description.settings.with_defaults(ConversionSettings(character=character))
+        animated = convert_take(description, output / ANIMATED_FOLDER, console, own, arguments.debug)
         scores = {
             "interpolation": _score(done.take, done.reconstruction.interpolation),
             "ekf": _score(done.take, filtered.motion),
@@ -98,7 +93,11 @@ def demo_command(arguments: argparse.Namespace, console: Console) -> None:
         lines = [
             f"Error against the true motion of {scores['map'].frames} frames, posed in "
             f"{scores['map'].keyframes} of them, in millimeters:",
-            *_table(scores),
+            " " * 17 + "".join(f"{title:>12}" for title in COLUMNS.values()),
+            *(
+                f"  {name.replace('_', ' '):15}" + "".join(f"{values[one]:12.1f}" for one in COLUMNS)
+                for name, values in result["scores_mm"].items()
+            ),
             f"({UNMARKED_FOLDER.replace('_', ' ')}: by contours, and keypoints as detectors see them)",
             f"Open in Blender: {output / BLEND}",
             missing or f"On a character: {output / CHARACTER_BLEND} (Rigify's basic human)",
@@ -115,16 +114,6 @@ def _score(take: Take, motion: Motion) -> Score:
     known = motion.method != "interpolation"
     sigma = motion.sigma_m if known else None
     return score_points(motion.points, truth, motion.keyframe_indices, take.camera, sigma)
-
-
-def _table(scores: Mapping[str, Score]) -> list[str]:
-    lines = [" " * 17 + "".join(f"{title:>12}" for title in COLUMNS.values())]
-    for name, score in scores.items():
-        values = score.to_dict()
-        lines.append(
-            f"  {name.replace('_', ' '):15}" + "".join(f"{values[column]:12.1f}" for column in COLUMNS)
-        )
-    return lines
 
 
 SCRIPT = Path(__file__).parent.with_name("generate_rigify_human.py")
@@ -149,5 +138,5 @@ def write_demo_character(file: Path) -> None:
     except (OSError, subprocess.TimeoutExpired) as error:
         raise ConversionError(f"{file}: Rigify's human cannot be generated ({error})") from error
     if done.returncode or not file.is_file():
-        said = done.stderr.decode(errors="replace").strip().splitlines() or ["no reason is given"]
-        raise ConversionError(f"{file}: Rigify's human cannot be generated ({said[-1]})")
+        lines = done.stderr.decode(errors="replace").strip().splitlines() or ["no reason is given"]
+        raise ConversionError(f"{file}: Rigify's human cannot be generated ({lines[-1]})")

@@ -152,7 +152,6 @@ def _single(path: Path) -> Footage | None:
 
 
 def _footage(take: ShootTake) -> Footage:
-    """The clip of a take, as its files describe it, or as it is where none do."""
     path = take.path
     described = (path / TAKE_FILE, sidecar_file(path, TAKE_FILE))
     if not take.overrides and not any(map(os.path.isfile, described)) and not find_shoot_files(path.parent):

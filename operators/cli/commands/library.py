@@ -199,8 +199,8 @@ def learn_command(arguments: argparse.Namespace, console: Console) -> None:
         checked_identifier(arguments.identifier, "--identifier")
     console.stage("Reading the motion")
     motion = read_motion(arguments.motion).without_absence()
-    given = {name: getattr(arguments, name) or "" for name in ("title", "author", "license", "identifier")}
-    about = LibraryMetadata(**given)
+    values = {name: getattr(arguments, name) or "" for name in ("title", "author", "license", "identifier")}
+    about = LibraryMetadata(**values)
     console.stage("Choosing postures")
     library = learn_library(motion.body, motion.posture, motion.time_s, about, arguments.count)
     write_new_library(console, arguments, library)

@@ -19,16 +19,9 @@ from ....core.take.motion import write_motion
 from ....core.take.reference import ARMATURE_ENDINGS, REFERENCE_ENDINGS, read_reference
 from ..blender_silence import blender_silence
 from ..console import Console, UsageError, argument, command, require_blender
+from ..conversion import character_result
 from ..conversion.blender_files import library_folders, refuse_unsupported_output
-from ..conversion.character_result import (
-    EXPORTS,
-    FORMAT,
-    check_exporters,
-    export_formats,
-    silenced,
-    write_character,
-    write_character_result,
-)
+from ..conversion.character_result import EXPORTS, FORMAT
 from ..options import character_options, character_settings, checked, output
 
 FILES = (MOTION, BVH, CHARACTER_BLEND, RETARGET, CHARACTER_PICTURE, *(file for _, file in EXPORTS.values()))
@@ -77,7 +70,7 @@ def mend_command(arguments: argparse.Namespace, console: Console) -> None:
     """
     require_blender("mending a motion needs")
     settings = character_settings(arguments)
-    formats = export_formats(arguments.format)
+    formats = character_result.export_formats(arguments.format)
     posed: tuple[int, ...] = arguments.posed
     file = CharacterFile.parse(arguments.motion, (*ARMATURE_ENDINGS, *REFERENCE_ENDINGS), "is no motion")
     file = replace(file, object=arguments.subject or file.object)
@@ -103,7 +96,7 @@ def mend_command(arguments: argparse.Namespace, console: Console) -> None:
 
             write_actor_bvh(motion, staging / BVH)
         if settings is not None:
-            job = write_character_result(
+            job = character_result.write_character_result(
                 settings,
                 motion,
                 absolute_path(file.path).stem,
@@ -171,18 +164,18 @@ def _mend_armature(
         from ...bridge.blend_files import own_scene, showing_scene
         from ...bridge.motions.import_motion import import_motion
         from ...bridge.motions.mend_action import mend_action, write_mended
-    check_exporters(own[2] if own is not None else ())
+    character_result.check_exporters(own[2] if own is not None else ())
     with own_scene("Motion") as scene, showing_scene(scene):
         with blender_silence(debug):
             imported, chosen = import_motion(file, scene, library_folders(), arguments.action)
         plant, floor = arguments.plant_feet is not False, not arguments.no_floor
         job = mend_action(imported.armature, chosen.character_map, posed, plant, floor)
         try:
-            found = run(silenced(job, debug), console.progress)
+            found = run(character_result.silenced(job, debug), console.progress)
         except InputError as error:
             raise InputError(f"{file.path}: {error}") from error
         if own is not None:
             with blender_silence(debug):
                 action = write_mended(imported.armature, found)
-                write_character(scene, imported, action, own[:2], own[2])
+                character_result.write_character(scene, imported, action, own[:2], own[2])
     return found.mended, (*imported.notes, *chosen.doubts)

@@ -100,11 +100,7 @@ class MotionGathering:
             raise ConversionError(f"none of the results can be used: {first}")
 
     def _assets_of(self, result: Result, names: set[str]) -> "Iterator[MotionAsset]":
-        """The assets of a motion and, where it has one, of its character.
-
-        Raises:
-            InputError: The motion, or the character, is unusable.
-        """
+        """The assets of a motion and, if it has one, of its character; InputError where one is unusable."""
         from ...bridge.assets import MotionAsset, load_character_action
 
         record, about = result.record, description(result)
@@ -129,7 +125,6 @@ class MotionGathering:
 
 
 def _as_written(result: Result, name: str) -> Path:
-    """A file of a result, which must be the one that the conversion wrote."""
     file = result.folder / name
     if content_digest(file) != result.record.files.get(name):
         raise InputError(f"{file}: is not the file that the conversion wrote")
@@ -137,10 +132,7 @@ def _as_written(result: Result, name: str) -> Path:
 
 
 def asset_name(take: str, names: set[str]) -> str:
-    """A name for a take's Action that is not among the names, to which it is added.
-
-    It is short enough for Blender not to cut it; of a long name the end is kept, for there takes differ.
-    """
+    """A name for a take's Action, added to the names: a number makes it unique, and its end fits Blender."""
     for number in range(1, len(names) + 2):
         suffix = "" if number == 1 else f" {number}"
         name = " ".join(take.split("/"))

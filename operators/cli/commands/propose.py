@@ -48,7 +48,6 @@ def propose_command(arguments: argparse.Namespace, console: Console) -> None:
 
 
 def _speed_job(take: Take) -> Job[EvidenceSpeed]:
-    """V_sum of the take's evidence."""
     reading = yield from stretch(read_footage(take), 0.0, 0.9)
     keypoints = performer_keypoints(take, reading.tracks)
     moved = evidence_speed(reading.tracks, take.marker_segments, keypoints, reading.album)

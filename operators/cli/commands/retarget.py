@@ -15,14 +15,9 @@ from ....core.take.conversion_record import BLEND, CHARACTER_BLEND, CHARACTER_PI
 from ....core.take.conversion_record import RECORD_FILE as CONVERSION
 from ....core.take.motion import read_motion
 from ..console import Console, argument, command, require_blender
+from ..conversion import character_result
 from ..conversion.blender_files import refuse_unsupported_output
-from ..conversion.character_result import (
-    EXPORTS,
-    FORMAT,
-    check_exporters,
-    export_formats,
-    write_character_result,
-)
+from ..conversion.character_result import EXPORTS, FORMAT
 from ..options import character_options, character_settings, output
 
 RESULT_FILES = (RECORD_FILE, CHARACTER_BLEND, CHARACTER_PICTURE, *(file for _, file in EXPORTS.values()))
@@ -53,7 +48,7 @@ def retarget_command(arguments: argparse.Namespace, console: Console) -> None:
     require_blender("a character needs")
     settings = character_settings(arguments)
     assert settings is not None, "the option is required"
-    formats = export_formats(arguments.format)
+    formats = character_result.export_formats(arguments.format)
     path: Path = arguments.motion
     motion_file, blend = (path / MOTION, path / BLEND) if path.is_dir() else (path, None)
     if path.is_dir() and not motion_file.exists():
@@ -68,12 +63,12 @@ def retarget_command(arguments: argparse.Namespace, console: Console) -> None:
 
     console.stage("Reading the motion")
     motion = read_motion(motion_file)
-    check_exporters(formats)
+    character_result.check_exporters(formats)
     lost: list[str] = []
     footage = blend if blend is not None and blend.is_file() else None
     kept: dict[str, str] = {}
     with output_folder(output, (*RESULT_FILES, AS_MADE), RECORD_FILE, kept) as staging_folder:
-        job = write_character_result(
+        job = character_result.write_character_result(
             settings,
             motion,
             absolute_path(motion_file).parent.name,

@@ -36,20 +36,12 @@ def requested_libraries(wanted: str) -> tuple[Library, ...]:
     return find_libraries(wanted, library_folders())
 
 
-# --- Files that Blender writes: paths it can work with, hidden names meanwhile, motion.blend and motion.bvh
-
-
 @contextmanager
 def hidden_files(names: Iterable[str], staging_folder: Path, output: Path) -> Iterator[Mapping[str, Path]]:
-    """Give paths to write files to; when the block ends well, they are moved into the staging folder.
+    """Give paths of files to write, as deep as `output`; when all ends well, they go into the staging folder.
 
-    Blender stores paths relative to the folder that it writes in, which must therefore lie as deep as
-    `output`: where the staging folder does not, the files are written into `output` under hidden names.
-
-    Args:
-        names: Names of the files in the staging folder.
-        staging_folder: Where the files are wanted.
-        output: The folder of the result, as a real path.
+    Blender stores paths relative to the folder it writes in: where the staging folder does not lie beside
+    `output`, a real path, the files are written into `output` under hidden names meanwhile.
     """
     folder = staging_folder if staging_folder.parent == output.parent else output
     hidden = {name: folder / f"{staging_folder.name}-{name}" for name in names}

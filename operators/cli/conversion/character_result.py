@@ -125,17 +125,10 @@ def write_character_result(
     formats: tuple[str, ...] = (),
     picture: bool = True,
 ) -> Job[RetargetRecord]:
-    """Put a motion onto a character and write the files.
+    """Put a motion onto a character and write the files of a take's name.
 
-    Args:
-        settings: The character, its map and the options.
-        motion: The motion.
-        take: Name of the take, after which the Action is named.
-        show_footage: Shows what was filmed.
-        folders: The staging folder, and the folder of the result as a real path.
-        debug: Whether to let Blender's messages through.
-        formats: Words of `EXPORTS`.
-        picture: Whether to draw the character beside the footage, where the scene shows some.
+    `folders` are the staging folder and that of the result, as a real path; `formats` are words of `EXPORTS`.
+    The character is drawn if `picture` is wanted and `show_footage`, which shows what was filmed, shows some.
     """
     staging_folder, _ = folders
     yield Progress("Opening the character", 0.0)
@@ -198,23 +191,28 @@ def write_character(
     formats: tuple[str, ...],
 ) -> str:
     """Write character.blend and the files of further formats; returns the digest of the Action's curves."""
-    from ...bridge.character.import_character import write_character_files
+    from ...bridge.actions import curve_digest
+    from ...bridge.blend_files import write_blend
+    from ...bridge.export_formats import FORMATS, export_motion
 
-    exports = dict(EXPORTS[word] for word in formats)
+    exports, armature = dict(EXPORTS[word] for word in formats), imported.armature
+    frames = scene.frame_start, scene.frame_end
     with hidden_files((CHARACTER_BLEND, *exports.values()), *folders) as hidden:
-        paths = {kind: hidden[file] for kind, file in exports.items()}
-        return write_character_files(scene, imported, action, hidden[CHARACTER_BLEND], paths)
+        scene.frame_set(scene.frame_start)
+        blocks = {scene, *imported.texts}
+        write_blend(hidden[CHARACTER_BLEND], blocks, path_remap="RELATIVE_ALL", fake_user=False)
+        for kind, file in exports.items():
+            export_motion(scene, armature, action, frames, FORMATS[kind], hidden[file], imported.objects)
+        return curve_digest(armature)
 
 
-def _draw(
-    scene: "bpy.types.Scene", armature: "bpy.types.Object", retargeted: "Retargeted", file: Path
-) -> None:
+def _draw(scene: "bpy.types.Scene", armature: "bpy.types.Object", done: "Retargeted", file: Path) -> None:
     from ...bridge.character.figure import character_picture
 
-    motion = retargeted.motion
+    motion = done.motion
     ground_m = [float(np.median(heights)) for heights in motion.ground_m.values()]  # none of feet not planted
     floor_m = float(motion.to_world.location[2]) + min(ground_m, default=0.0)
-    image = character_picture(scene, armature, retargeted.character_map, retargeted.keys.frames, floor_m)
+    image = character_picture(scene, armature, done.character_map, done.keys.frames, floor_m)
     if image is not None:
         file.parent.mkdir(exist_ok=True)
         write_png(str(file), image)

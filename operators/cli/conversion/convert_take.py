@@ -15,24 +15,11 @@ from ....core.report.pictures import performer_contours, write_pictures
 from ....core.retarget.maps.map_registry import map_digests
 from ....core.retarget.retarget_record import RetargetRecord
 from ....core.review.frame_evidence import compare_keypoints
-from ....core.session.result import (
-    Conversion,
-    finish_result,
-    own_files,
-    refuse_own_folder,
-    write_made_digests,
-    write_motion_files,
-    write_take_files,
-)
+from ....core.session import result as results
+from ....core.session.result import Conversion
 from ....core.session.session import Keep, Posed, Session, keep_nothing
-from ....core.take.conversion_record import (
-    BLEND,
-    CHARACTER_BLEND,
-    RECORD_FILE,
-    REPORT,
-    conversion_digest,
-    is_up_to_date,
-)
+from ....core.take import conversion_record
+from ....core.take.conversion_record import BLEND, CHARACTER_BLEND, RECORD_FILE, REPORT
 from ....core.take.conversion_settings import ConversionSettings
 from ....core.take.description import Description
 from ....core.take.reference import ReferenceMotion
@@ -61,28 +48,24 @@ def convert_take(
 ) -> Conversion:
     """Convert a take; `output` changes only when all results are complete.
 
-    Where keyframes are found, only posed ones that the settings name count beside them. `debug` lets
-    Blender's messages through; `formats` are words of `EXPORTS`, further files of the character. `keep` gets
-    each stage (`advance`); `notes` are sentences on how the clip was read.
-
-    Raises:
-        UpToDate: `again` is not set, the digest of the input (`conversion_digest`) is that in the
-            result's record, and every file of the record is there; times of files do not count.
+    Where keyframes are found, only posed ones that the settings name count beside them. `formats` are words
+    of `EXPORTS`; `keep` gets each stage (`advance`); `notes` are sentences on how the clip was read. UpToDate
+    is raised where, without `again`, the record there is of this input and all of its files are there.
     """
     console.stage("Reading the take")
     require_blender("writing motion.blend needs")
     refuse_unsupported_paths(description, output)
     character, kept_names = settings.character, dict[str, str]()
-    own = own_files(description, output)
+    own = results.own_files(description, output)
     with output_folder(output, own, RECORD_FILE, kept_names) as staging_folder:
         libraries = () if settings.library is None else requested_libraries(settings.library)
         digests = [library_digest(library) for library in libraries]
         maps = () if character is None else map_digests(character.map, library_folders())
-        digest = conversion_digest(description, settings, digests, output, version(), maps)
-        if not again and is_up_to_date(output, digest):
+        digest = conversion_record.conversion_digest(description, settings, digests, output, version(), maps)
+        if not again and conversion_record.is_up_to_date(output, digest):
             raise UpToDate
         if settings.library is not None:
-            refuse_own_folder(description, output)
+            results.refuse_own_folder(description, output)
         if character is not None:
             console.stage("Opening the character")
             with opened_character(character.character_file, character.map, debug):
@@ -116,9 +99,9 @@ def convert_take(
         session = run(way, console.progress)
         take, result = session[Posed].seen.take, session[Reconstruction]
         console.stage("Writing the motion")
-        write_motion_files(staging_folder, session)
+        results.write_motion_files(staging_folder, session)
         if session.inputs.open_lens is not None:
-            write_take_files(staging_folder, session, description, settings.evidence)
+            results.write_take_files(staging_folder, session, description, settings.evidence)
         console.stage("Writing Blender's files")
         filmed = _filmed(session)
         beside = staging_folder / filmed.clip.name
@@ -129,14 +112,14 @@ def convert_take(
             record = session[RetargetRecord]
             curves[CHARACTER_BLEND] = record.files[CHARACTER_BLEND]
             notes = (*notes, *record.doubts, *record.notes)
-        write_made_digests(staging_folder, curves)
+        results.write_made_digests(staging_folder, curves)
         if settings.pictures is not False:
             console.stage("Drawing the pictures")
             seen, contours = compare_keypoints(result), performer_contours(result)
             report = staging_folder / REPORT
             write_pictures(report, take, result.motion, result.reading.tracks, seen, contours, result.reading)
-        asked, folders = (description, settings, digest), (staging_folder, output)
-        return finish_result(session, notes, asked, version(), folders, curves, kept_names)
+        source, folders = (description, settings, digest), (staging_folder, output)
+        return results.finish_result(session, notes, source, version(), folders, curves, kept_names)
 
 
 def _filmed(session: Session) -> Take:

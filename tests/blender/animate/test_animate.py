@@ -17,7 +17,7 @@ from keymark.operators.animate.stages import animate, follow_found_file, turned_
 from keymark.operators.bridge.footage import read_placement
 from keymark.operators.follow.evidence import keypoint_path
 from keymark.operators.footage.load_footage import load_into_take
-from keymark.operators.library import registry_files
+from keymark.operators.library import registry
 from keymark.operators.reconstruct.reconstruct import PreviewedJob
 from keymark.operators.shell.take_state import TakeState
 from keymark.operators.shell.takes import active_take
@@ -32,7 +32,7 @@ def clip(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     write_keypoints(tmp_path / "hall.keypoints.json", gliding())
     posture, said = true_postures(24), LibraryMetadata("Swaying", "Nobody")
     library = learn_library(BODY, posture, np.arange(24) / 30.0, said)
-    monkeypatch.setattr(registry_files, "all_libraries", lambda: [library])
+    monkeypatch.setattr(registry, "all_libraries", lambda: [library])
     return tmp_path / "hall.mp4"
 
 

@@ -17,7 +17,7 @@ from keymark.core.take.motion import read_motion
 from keymark.operators.bridge.footage_camera import may_move
 from keymark.operators.cli.conversion import convert_take
 from keymark.operators.cli.main import main
-from keymark.operators.library import registry_files
+from keymark.operators.library import registry
 from keymark.operators.shell.takes import active_take
 
 pytestmark = pytest.mark.usefixtures("registered")
@@ -47,7 +47,7 @@ def test_button_and_command_line_go_the_same_way(
     write_shaken(tmp_path / "hall.mp4", posture, turn_rad)
     said = LibraryMetadata("Swaying", "Nobody")
     library = learn_library(BODY, true_postures(24), np.arange(24) / 30.0, said)
-    monkeypatch.setattr(registry_files, "all_libraries", lambda: [library])
+    monkeypatch.setattr(registry, "all_libraries", lambda: [library])
     monkeypatch.setattr(convert_take, "requested_libraries", lambda _name: (library,))
     clip, out = str(tmp_path / "hall.mp4"), tmp_path / "out"
     bpy.ops.keymark.animate(filepath=clip, stature=1.75, character="NONE")

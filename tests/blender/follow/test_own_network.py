@@ -15,7 +15,7 @@ from keymark.core.session import see
 from keymark.operators.animate import NOTHING
 from keymark.operators.follow.evidence import keypoint_path
 from keymark.operators.follow.load_keypoints import KEYMARK_AP_preferences, draw_network
-from keymark.operators.library import registry_files
+from keymark.operators.library import registry
 from keymark.operators.shell.results import EXTENSION
 from keymark.operators.shell.takes import active_take
 
@@ -41,7 +41,7 @@ def clip(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setattr("keymark.core.detect.closer_look._there", lambda _network: None)
     said = LibraryMetadata("Swaying", "Nobody")
     library = learn_library(BODY, true_postures(24), np.arange(24) / 30.0, said)
-    monkeypatch.setattr(registry_files, "all_libraries", lambda: [library])
+    monkeypatch.setattr(registry, "all_libraries", lambda: [library])
     return tmp_path / "clips" / "dots.avi"
 
 

@@ -12,7 +12,7 @@ from keymark.core.session import pose as pose_stage
 from keymark.core.take.motion import Motion
 from keymark.core.take.take import Take
 from keymark.operators.keyframes import posing
-from keymark.operators.library import registry_files
+from keymark.operators.library import registry
 from keymark.operators.shell import results
 from keymark.operators.shell.takes import active_take
 
@@ -45,7 +45,7 @@ def given(monkeypatch: pytest.MonkeyPatch, wave_motion: Motion) -> SimpleNamespa
     for module in (clip_posing, pose_stage):
         monkeypatch.setattr(module, "pose_clip", pose_clip)
     libraries = [wave_library(wave_motion), wave_library(wave_motion, "walking")]
-    monkeypatch.setattr(registry_files, "all_libraries", lambda: libraries)
+    monkeypatch.setattr(registry, "all_libraries", lambda: libraries)
     return asked
 
 

@@ -15,6 +15,7 @@ from keymark.operators.bridge.keyframes import unchanged_keyframes
 from keymark.operators.bridge.keys import PICTURED
 from keymark.operators.keyframes import drag_joints
 from keymark.operators.overlays.tools import Handles
+from keymark.operators.shell import need
 from keymark.operators.shell.take_state import TakeState
 from keymark.operators.shell.takes import active_take
 
@@ -74,8 +75,8 @@ def tool(found: Group, monkeypatch: pytest.MonkeyPatch) -> Any:
     running._handles.hovered = "wrist.L"
     monkeypatch.setattr(drag_joints, "view_under", lambda *_: FrontView() if running.inside else None)
     monkeypatch.setattr(drag_joints, "nearest_joint", lambda *_: "wrist.L")
-    for name in ("show_keys", "redraw_editors", "idle"):
-        monkeypatch.setattr(drag_joints, name, lambda *_: None)
+    for module, name in ((drag_joints, "show_keys"), (drag_joints, "redraw_editors"), (need, "idle")):
+        monkeypatch.setattr(module, name, lambda *_: None)
     return running
 
 

@@ -17,7 +17,7 @@ from keymark.core.prior.texts import COMPOSED
 from keymark.core.take.motion import Motion
 from keymark.core.take.take import Take
 from keymark.operators.bridge.keyframes import candidate_posture
-from keymark.operators.library import registry_files
+from keymark.operators.library import registry
 from keymark.operators.shell import results
 from keymark.operators.shell.take_state import TakeState
 from keymark.operators.shell.takes import active_take
@@ -173,12 +173,12 @@ def test_without_an_actor_nothing_can_be_posed(tiny_take: Take) -> None:
 def test_a_named_library_alone_is_asked(
     unposed: Group, given: SimpleNamespace, wave_motion: Motion, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(registry_files, "load_registered", lambda name: wave_library(wave_motion, name))
+    monkeypatch.setattr(registry, "load_registered", lambda name: wave_library(wave_motion, name))
     unposed.matching.library_name = "jumping"
     for words, asked in (({}, ["jumping"]), ({"library": "waves"}, ["waves"])):
         assert bpy.ops.keymark.pose_all(**words) == {"FINISHED"}
         assert given.libraries[-1] == asked
-    every = len(registry_files.all_libraries())
+    every = len(registry.all_libraries())
     bpy.ops.keymark.pose_all(library="auto")
     assert len(given.libraries[-1]) == every
     active_take(bpy.context.scene).matching.library = "auto"

@@ -19,8 +19,8 @@ from keymark.operators.bridge.armature import build_armature
 from keymark.operators.bridge.keyframes import write_keyframes
 from keymark.operators.bridge.library import add_assets, read_library_blend
 from keymark.operators.bridge.pose import write_posture_curves
-from keymark.operators.library import registry, registry_files
-from keymark.operators.library.registry_files import load_registered
+from keymark.operators.library import registry
+from keymark.operators.library.registry import load_registered
 from keymark.operators.shell.takes import add_take
 
 RandomPosture = Callable[[int], Posture]
@@ -116,10 +116,10 @@ def test_libraries_are_the_same_objects_until_a_file_changes(
     own: Path, library: Library, tmp_path: Path
 ) -> None:
     imported(library, tmp_path)
-    first = registry_files.all_libraries()
-    assert registry_files.all_libraries() is first
+    first = registry.all_libraries()
+    assert registry.all_libraries() is first
     imported(replace(library, identifier="another", title="Another"), tmp_path)
-    assert [each.identifier for each in registry_files.all_libraries()] == ["another", "small"]
+    assert [each.identifier for each in registry.all_libraries()] == ["another", "small"]
 
 
 def test_another_version_needs_to_be_asked_for(own: Path, library: Library, tmp_path: Path) -> None:
