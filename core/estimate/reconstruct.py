@@ -31,7 +31,14 @@ from .keypoint_fit import KeypointFit, keypoint_notes, observed_joints
 from .notes import contour_notes, evidence_notes, filter_notes, found_notes, marker_notes, of_true_causes
 from .performer_placement import feet_over_floor_m, found_ankle_m
 from .reference_evidence import KEYFRAME_WIDTH, NoReference, ReferenceEvidence, with_reference
-from .sigma import LIMB_STD_RAD, place_depth_std_m, undetermined_covariance, unobserved_variance
+from .sigma import (
+    LIMB_STD_RAD,
+    across_sight,
+    guessed_depth_std_m,
+    place_depth_std_m,
+    undetermined_covariance,
+    unobserved_variance,
+)
 from .whole_clip import WholeClipResult, estimate_whole_clip
 
 CHUNK_FRAMES = 500
@@ -61,12 +68,14 @@ def reconstruct(
     method: str = "map",
     referred: ReferenceEvidence | NoReference | None = None,
     floor_m: float | None = None,
+    placed: bool = True,
 ) -> Job[Reconstruction]:
     """Reconstruct a take's motion.
 
     `method` is `map` (the whole clip at once), `ekf` (the paper's filter) or `interpolation`; `referred` is
     what the take's reference motion tells; `floor_m` is the floor's height, on which found poses should
-    stand. Closing the generator cancels the job, which has no effects of its own.
+    stand; `placed`: somebody says where the camera is, so that the performer's place can be wrong. Closing
+    the generator cancels the job, which has no effects of its own.
 
     Raises:
         InputError: The method is unknown, or there are too few keyframes.
@@ -76,7 +85,7 @@ def reconstruct(
     check_reconstructible(seen.take, method)
     # The matrices are small: more threads of linear algebra take up to twenty times as long.
     with threadpool_limits(limits=1, user_api="blas"):
-        return (yield from _reconstruct(seen, method, referred, floor_m))
+        return (yield from _reconstruct(seen, method, referred, floor_m, placed))
 
 
 def check_reconstructible(take: Take, method: str) -> None:
@@ -95,6 +104,7 @@ def _reconstruct(
     method: str,
     reference: ReferenceEvidence | NoReference | None,
     floor_m: float | None,
+    placed: bool,
 ) -> Job[Reconstruction]:
     take, reading, keypoints, there = shown.take, shown.reading, shown.keypoints, shown.there
     notes, tracks, referred = take.notes, reading.tracks, None
@@ -121,7 +131,8 @@ def _reconstruct(
         belief = _belief(take, prior, doubt, shown.feet_seen, referred)
         estimate = estimate_whole_clip(take.body, take.camera, footage, belief)
         solution = yield from within("Estimating the motion", estimate, 0.0, 1.0)
-        motion, model = _solved(take, shown, tracks, solution, doubt, floor_m), solution.evidence.model
+        motion = _solved(take, shown, tracks, solution, doubt, floor_m, placed)
+        model = solution.evidence.model
         notes += evidence_notes(take, solution.evidence)
         notes += keypoint_notes(solution.keypoints)
         notes += contour_notes(take, solution.contours is not None)
@@ -173,6 +184,7 @@ def _solved(
     result: WholeClipResult,
     doubt: Array,
     floor_m: float | None,
+    placed: bool,
 ) -> Motion:
     fit, never = result.keypoints, shown.unseen
     diagnostics = {
@@ -202,22 +214,28 @@ def _solved(
     posture = rested(take.body, result.posture, never)
     motion = _motion(take, tracks, posture, result.covariance, "map", diagnostics, unseen)
     motion = replace(motion, unseen=never)
+    if not doubt.any():
+        return motion
+    at_m, spread = motion.points, motion.point_covariance
     place_std_m: Array | float = 0.0
-    if doubt.any():
-        lower = motion.points[:, ANKLES, 2].min(axis=1) if any(shown.feet_seen) else None
+    if placed:
+        lower = at_m[:, ANKLES, 2].min(axis=1) if any(shown.feet_seen) else None
         over_m = 0.0
         if lower is not None and floor_m is not None:
-            over_m = feet_over_floor_m(take.body, motion.points, floor_m)
-        place_std_m = place_depth_std_m(motion.points, lower, take.camera, over_m)
+            over_m = feet_over_floor_m(take.body, at_m, floor_m)
+        place_std_m = place_depth_std_m(at_m, lower, take.camera, over_m)
     # A reference motion has its own errors in the estimate; open is what all sizes share.
-    sure = np.array(
-        [
-            1.0 if key.matched is None or key.matched.is_referred else key.matched.confidence
-            for key in take.keyframes
-        ]
-    )
-    open_depth = undetermined_covariance(motion.points, take.camera, index, doubt, sure, place_std_m)
-    return replace(motion, point_covariance=motion.point_covariance + open_depth)
+    found = [key.matched for key in take.keyframes]
+    sure = np.array([1.0 if one is None or one.is_referred else one.confidence for one in found])
+    guessed_m = None
+    if not any(one is not None and one.is_referred for one in found):
+        guessed_m = guessed_depth_std_m(at_m, take.camera, fit.keypoints)
+    if guessed_m is not None:  # in place of what depths usually differ by
+        own = point_covariance(take.body, posture, result.covariance)
+        share = np.interp(np.arange(len(at_m)), index, doubt)
+        spread = spread + across_sight(own, at_m, take.camera, share) - own
+    spread = spread + undetermined_covariance(at_m, take.camera, index, doubt, sure, place_std_m, guessed_m)
+    return replace(motion, point_covariance=spread)
 
 
 def _filtered(take: Take, tracks: RegionTracks, prior: Posture) -> Job[Motion]:

@@ -1,13 +1,16 @@
 """How far a result may be off where neither footage nor keyframes determine it: points found, and unobserved.
 
-Where the markers are seen tells the place across the line of sight, and little of that along it.
+Where the markers are seen tells the place across the line of sight, and little of that along it. Of a found
+posture's depths the estimate knows how performers usually differ; a network's guess tells how this one does.
 """
 
 import numpy as np
 
 from ..arrays import Array, BoolArray, IndexArray
+from ..body.human import HIPS, HUMAN
 from ..body.skeleton import Skeleton
 from ..camera.camera import Camera
+from ..detect.keypoints import Keypoints
 
 # --- Found keyframes
 
@@ -54,10 +57,35 @@ def place_depth_std_m(
     return np.asarray(np.hypot(np.sqrt(variance), step))
 
 
-def found_std_m(confidence: Array) -> Array:
-    """Errors (..., 2) [m] across and along the line of sight of points that were found so surely (...)."""
+def found_std_m(confidence: Array, guessed_std_m: float | None = None) -> Array:
+    """Errors (..., 2) [m] across and along the line of sight of points that were found so surely (...).
+
+    Along it those of sure ones are what a network's guess tells, where there is one.
+    """
     sure = confidence[..., None]
-    return np.asarray(np.sqrt(sure * SURE_STD_M**2 + (1.0 - sure) * UNSURE_STD_M**2))
+    sure_std_m = SURE_STD_M if guessed_std_m is None else np.array([SURE_STD_M[0], guessed_std_m])
+    return np.asarray(np.sqrt(sure * sure_std_m**2 + (1.0 - sure) * UNSURE_STD_M**2))
+
+
+def guessed_depth_std_m(points: Array, camera: Camera, keypoints: Keypoints) -> float | None:
+    """Error of depths of points (F, P, 3) [m] by a network's guess of them; None without one.
+
+    Neither knows how far off the other is: each has half of the squared difference. It is that of the whole
+    clip, since both err for long.
+    """
+    rows = [row for row, name in enumerate(keypoints.names) if name in HUMAN.point_names]
+    own = [HUMAN.point_names.index(keypoints.names[row]) for row in rows]
+    depth = camera.depth(points, np.arange(len(points))[:, None])
+    found = depth[:, own] - depth[:, HIPS].mean(axis=1, keepdims=True)
+    off = found - keypoints.hint_m[:, rows, 2]  # of which the hips are the origin, too
+    return float(np.sqrt(0.5 * np.nanmean(off**2))) if np.isfinite(off).any() else None
+
+
+def across_sight(covariance: Array, points: Array, camera: Camera, share: Array) -> Array:
+    """Covariance (F, P, 3, 3) of points (F, P, 3) with a share (F,) of their error in depth taken away."""
+    sight = camera.sight(points, np.arange(len(points))[:, None])
+    left = np.eye(3) - share[:, None, None, None] * sight[..., :, None] * sight[..., None, :]
+    return np.asarray(left @ covariance @ left)
 
 
 def undetermined_covariance(
@@ -67,17 +95,18 @@ def undetermined_covariance(
     doubt: Array,
     confidence: Array,
     place_std_m: Array | float = 0.0,
+    guessed_std_m: float | None = None,
 ) -> Array:
     """Covariance (F, P, 3, 3) [m²] of points (F, P, 3) that found keyframes leave undetermined.
 
     Of K keyframes: `index` in the clip, in order; `doubt`, size of the error relative to a usual one, 0
     for posed ones; `confidence`, probability that each is about right. `place_std_m` (F,): error of the whole
-    performer's place along the line of sight, if more than usual.
+    performer's place along the line of sight, if more than usual; `guessed_std_m` as `guessed_depth_std_m`.
     """
     frame = np.arange(len(points))
     sight = camera.sight(points, frame[:, None])
     along = sight[..., :, None] * sight[..., None, :]
-    std_m = doubt[:, None] * found_std_m(confidence)
+    std_m = doubt[:, None] * found_std_m(confidence, guessed_std_m)
     across_m, along_m = (np.interp(frame, index, own) for own in std_m.T)
     along_m = np.hypot(along_m, np.interp(frame, index, doubt) * place_std_m)
     variance = np.square([across_m, along_m])[:, :, None, None, None]

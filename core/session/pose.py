@@ -19,7 +19,7 @@ from ..poses.found_poses import referred_poses, with_found
 from ..prior.library import library_digest
 from ..progress import Job
 from ..take.take import Take
-from .session import Inputs, Posed, Session, Stage, placed_take
+from .session import Inputs, Placed, Posed, Session, Stage, placed_take
 
 
 def pose(session: Session) -> Job[Posed]:
@@ -76,7 +76,9 @@ POSE = Stage("pose", pose, _uses, lambda inputs: 0.0 if inputs.libraries is None
 def make_motion(session: Session) -> Job[Reconstruction]:
     """Reconstruct the motion from all that is seen and posed."""
     inputs, posed = session.inputs, session[Posed]
-    made = yield from reconstruct(posed.seen, inputs.method, posed.referred, floor_m=posed.floor_m)
+    # A camera that was found stands where it has the performer: that place is no other's.
+    placed = session[Placed].camera is None
+    made = yield from reconstruct(posed.seen, inputs.method, posed.referred, posed.floor_m, placed)
     if not inputs.hands:
         return made
     motion, take = made.motion, posed.seen.take

@@ -7,6 +7,7 @@ import pytest
 from _scene import BODY, CAMERA, MODEL, SEGMENTS, belief_in, exercise, film, no_points, point_error_m
 from keymark.core.body.human import HUMAN
 from keymark.core.body.posture import Posture
+from keymark.core.detect.keypoints import Keypoints
 from keymark.core.estimate.belief import (
     PLACE_DEPTH_STD_M,
     PLACE_STD_M,
@@ -30,6 +31,8 @@ from keymark.core.estimate.sigma import (
     LIMB_STD_RAD,
     SURE_STD_M,
     UNSURE_STD_M,
+    across_sight,
+    guessed_depth_std_m,
     place_depth_std_m,
     undetermined_covariance,
     unobserved_variance,
@@ -130,6 +133,31 @@ def test_what_is_undecided_lies_along_the_line_of_sight_and_vanishes_at_posed_ke
     np.testing.assert_allclose(found[0], UNSURE_STD_M)
     np.testing.assert_allclose(found[2], SURE_STD_M)
     assert (found[0] > found[1]).all() and (found[1] > found[2]).all()
+
+
+def test_a_guess_of_depths_tells_how_far_off_found_depths_are() -> None:
+    points = BODY.points(BODY.pose(TRUTH[:11]))
+    depth = CAMERA.depth(points, np.arange(11)[:, None])
+    hips = [HUMAN.point_names.index(f"hip.{side}") for side in "LR"]
+    wrist = HUMAN.point_names.index("wrist.R")
+    hint = np.full((11, 3, 3), np.nan)
+    hint[:, 0, 2] = depth[:, wrist] - depth[:, hips].mean(axis=1) + 0.1
+    hint[:, 1:, 2] = 5.0  # other points than the thirteen, and one that is never guessed
+    hint[:, 2] = np.nan
+    names, pixel = ("wrist.R", "heel.L", "knee.L"), np.zeros((11, 3, 2))
+    seen = Keypoints(names, ("network",) * 3, pixel, np.ones((11, 3)), hint)
+    guessed_m = guessed_depth_std_m(points, CAMERA, seen)
+    assert guessed_m == pytest.approx(0.1 / np.sqrt(2.0))
+    assert guessed_depth_std_m(points, CAMERA, seen.without_hints()) is None
+    index, doubt = np.array([0, 10]), np.array([0.0, 1.0])
+    spread = undetermined_covariance(points, CAMERA, index, doubt, np.ones(2), guessed_std_m=guessed_m)
+    own = across_sight(
+        np.broadcast_to(0.05**2 * np.eye(3), spread.shape), points, CAMERA, doubt[[0] * 10 + [1]]
+    )
+    np.testing.assert_allclose(own[0, 4], 0.05**2 * np.eye(3), atol=1e-12)
+    sight = CAMERA.sight(points, np.arange(11)[:, None])[10, 4]
+    assert sight @ (own + spread)[10, 4] @ sight == pytest.approx(0.005)
+    assert np.trace((own + spread)[10, 4]) == pytest.approx(0.005 + 2.0 * (0.05**2 + SURE_STD_M[0] ** 2))
 
 
 def test_a_performer_whose_distance_is_unsure_is_so_along_the_line_of_sight() -> None:

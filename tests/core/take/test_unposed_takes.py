@@ -8,10 +8,14 @@ import numpy as np
 import pytest
 from _synthetic_take import true_postures, write_synthetic_take
 from keymark.core.api import reconstruct
+from keymark.core.body.human import ANKLES
 from keymark.core.estimate.notes import filter_notes, found_notes
+from keymark.core.estimate.reconstruct import reconstruct as estimated
+from keymark.core.estimate.sigma import place_depth_std_m
 from keymark.core.poses.found_poses import NEAR_FRAMES, Candidate, FoundPoses, MatchedFrame, with_found
 from keymark.core.prior.keyframes import Keyframe, Matched
 from keymark.core.progress import run
+from keymark.core.session.stages import seen_in
 from keymark.core.take.take import Take
 from keymark.core.take.take_file import read_take
 
@@ -65,6 +69,16 @@ def test_a_reconstruction_has_these_notes_and_a_larger_depth_variance(take: Take
     assert any("no keyframe was posed" in note for note in matched.notes)
     assert not any("posed:" in note for note in posed.notes)
     assert (matched.motion.sigma_m > posed.motion.sigma_m).all()
+
+
+def test_where_the_camera_was_found_the_distance_from_it_is_no_error(take: Take) -> None:
+    seen = seen_in(unposed(take), run(reconstruct(take)).reading)
+    placed, found_camera = (run(estimated(seen, placed=each)).motion for each in (True, False))
+    assert np.array_equal(placed.points, found_camera.points)
+    added = np.sqrt(placed.sigma_m**2 - found_camera.sigma_m**2)
+    lower = placed.points[:, ANKLES, 2].min(axis=1)
+    expected = place_depth_std_m(placed.points, lower, take.camera)
+    np.testing.assert_allclose(added, np.broadcast_to(expected[:, None], added.shape), rtol=1e-6)
 
 
 def test_matched_keyframes_move_beside_posed_ones(take: Take) -> None:
