@@ -34,6 +34,7 @@ from keymark.core.session.described import findings  # noqa: E402
 from keymark.core.session.session import Session, Sight  # noqa: E402
 from keymark.core.take.conversion_settings import ConversionSettings  # noqa: E402
 from keymark.core.take.description import Description, describe  # noqa: E402
+from keymark.core.take.motion import Motion  # noqa: E402
 from keymark.core.take.take import Take  # noqa: E402
 from keymark.core.take.take_file import read_take  # noqa: E402
 
@@ -41,7 +42,7 @@ Result = TypeVar("Result")
 LIBRARIES = ROOT / "presets" / "keyframes"
 COLUMNS = (
     "take", "similar, found camera [mm]", "true camera [mm]", "hips aligned, found [mm]", "true [mm]",
-    "place drifts [cm]", "heading drifts [deg]", "skate [mm/frame]", "floor [cm]",
+    "place drifts [cm]", "heading drifts [deg]", "skate [mm/frame]", "floor [cm]", "covered",
     "detect [s]", "pose [s]", "estimate [s]",
 )  # fmt: skip
 FEET = [HUMAN.point_names.index(f"ankle.{side}") for side in "LR"]
@@ -67,10 +68,13 @@ class Errors:
     """Travel a frame of ankles that truly stand."""
     floor_cm: float
     """Deviation of their heights above the floor z = 0 from those of the truth."""
+    covered: float
+    """Share of the points within 1.96 sigma."""
 
 
-def errors_of(points: Array, truth: Array, fps: float) -> Errors:
-    """Errors of points (F, 13, 3) [m]."""
+def errors_of(motion: Motion, truth: Array) -> Errors:
+    """Errors of a motion against true points (F, 13, 3) [m]."""
+    points, fps = motion.points, motion.fps
     scale, turn, move = similarity(points.reshape(-1, 3), truth.reshape(-1, 3))
     there = scale * points @ turn.T + move
     hips, true_hips = there[:, HIPS].mean(axis=1), truth[:, HIPS].mean(axis=1)
@@ -89,6 +93,7 @@ def errors_of(points: Array, truth: Array, fps: float) -> Errors:
         float(np.degrees(abs(turned[-quarter:].mean() - turned[:quarter].mean()))),
         1000.0 * float(travel[stands].mean()) if stands.any() else np.nan,
         100.0 * float(np.sqrt(np.mean(lower[stands] ** 2))) if stands.any() else np.nan,
+        float((np.linalg.norm(there - truth, axis=-1) <= 1.96 * motion.sigma_m).mean()),
     )
 
 
@@ -154,7 +159,7 @@ def measure(
     by_true, _ = timed(reconstruct(known, "map", None, libraries, 0.0))
     count = len(motion.time_s)
     truth = read_truth(folder / "truth.json", true.frame_start, count)
-    errors = [errors_of(one.points, truth, true.fps) for one in (motion, by_true.motion)]
+    errors = [errors_of(one, truth) for one in (motion, by_true.motion)]
     return errors[0], errors[1], seconds, list(findings(made, description))
 
 
@@ -171,8 +176,8 @@ def main() -> None:
         posing = sum(seconds.get(stage, 0.0) for stage in POSING)
         times = [seconds.get("Detecting keypoints", 0.0), posing, seconds.get("Estimating the motion", 0.0)]
         cells = [found.similar_mm, true.similar_mm, found.rooted_mm, true.rooted_mm]
-        rest = [found.place_cm, found.heading_deg, found.skate_mm, found.floor_cm, *times]
-        words = [*(f"{cell:.0f}" for cell in cells), *(f"{cell:.1f}" for cell in rest)]
+        rest = [found.place_cm, found.heading_deg, found.skate_mm, found.floor_cm, found.covered, *times]
+        words = [*(f"{cell:.0f}" for cell in cells), *(f"{cell:.2f}" for cell in rest)]
         lines.append(f"| {name} | {' | '.join(words)} |")
         print(lines[-1], *said, sep="\n  ", file=sys.stderr, flush=True)
         numbers[name] = {"found": asdict(found), "true": asdict(true), "seconds": seconds, "findings": said}
