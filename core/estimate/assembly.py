@@ -1,6 +1,6 @@
 """The terms of each estimate, in the order in which they are added.
 
-A new kind of evidence is a file beside this one (the protocol is in `term.py`) and a line in each list it
+A new kind of evidence is a file in `core/terms` (the protocol is in its `term.py`) and a line in each list it
 belongs to: a window of a clip, the same once its contours are measured, a single frame. A list keeps its
 order, since rounding depends on it.
 """
