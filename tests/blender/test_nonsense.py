@@ -20,7 +20,8 @@ from keymark.operators.shell.takes import active_take
 
 TEXTS = ("", "nowhere/none.xyz", "\u00e4:,;\n")
 SOURCES = Path(__file__).parents[2].joinpath("operators").rglob("*.py")
-FOUND = (re.findall(r"class KEYMARK_OT_(\w+)", file.read_text("utf-8")) for file in SOURCES)
+OPERATOR = re.compile(r"(?:class KEYMARK_OT_|^@operator\(.*?\)\ndef )(\w+)", re.MULTILINE | re.DOTALL)
+FOUND = (OPERATOR.findall(file.read_text("utf-8")) for file in SOURCES)
 NAMES = sorted({*chain(*FOUND)} - {"add_rigify_human"})  # which has a process of its own, see `_own_process`
 NUMBERS = (-1e9, 1e9)
 
