@@ -62,8 +62,10 @@ def test_a_marked_motion_comes_back_from_the_file(take: bpy.types.PropertyGroup,
     assert tuple(action.preview.image_size) == (256, 256)
     pixels = np.empty(256 * 256 * 4, np.float32)
     action.preview.image_pixels_float.foreach_get(pixels)
-    dark = (pixels.reshape(256, 256, 4)[..., :3].max(axis=-1) < 0.4).mean()
-    assert 0.01 < dark < 0.3  # a figure is drawn on a light ground
+    colors = pixels.reshape(256, 256, 4)[..., :3]
+    assert colors[0, 0].min() > 0.9
+    figure = (np.abs(colors - colors[0, 0]).max(axis=-1) > 0.1).mean()
+    assert 0.05 < figure < 0.3  # a figure is drawn on a light ground
     assert len(action.slots) == 1
 
 
