@@ -46,6 +46,8 @@ def ready(opened: bpy.types.Scene, wave_motion: Motion) -> bpy.types.Scene:
     bpy.context.view_layer.objects.active = take.armature
     bpy.ops.object.mode_set(mode="POSE")
     take.armature.data.bones.active = take.armature.data.bones["forearm.L"]
+    forearm = take.armature.pose.bones["forearm.L"]
+    (forearm if hasattr(forearm, "select") else forearm.bone).select = True  # of the pose since Blender 5.0
     return opened
 
 
