@@ -19,6 +19,7 @@ import numpy as np
 from ..arrays import Array, BoolArray, Image, IndexArray
 from ..body.skeleton import SIDES
 from ..errors import InputError
+from ..numerics.cubic import hermite_basis
 from ..progress import Job, Progress
 from ..video.clip import Clip
 from ..video.working_image import measuring_image
@@ -323,11 +324,9 @@ def _fill(
     if len(at) > 1:
         between = np.arange(at[0], at[-1] + 1)
         left = np.clip(np.searchsorted(at, between, side="right") - 1, 0, len(at) - 2)
-        gap, slope = np.diff(at)[left, None, None], np.gradient(seen, at, axis=0)
-        share = (between - at[left])[:, None, None] / gap
-        rest = 1.0 - share
-        begun = rest**2 * ((1.0 + 2.0 * share) * seen[left] + share * gap * slope[left])
-        ended = share**2 * ((1.0 + 2.0 * rest) * seen[left + 1] - rest * gap * slope[left + 1])
+        gap, slope = np.diff(at)[left], np.gradient(seen, at, axis=0)
+        v0, m0, v1, m1 = hermite_basis(gap, (between - at[left]) / gap).T[..., None, None]
+        begun, ended = v0 * seen[left] + m0 * slope[left], v1 * seen[left + 1] + m1 * slope[left + 1]
         seen, at = begun + ended, between
     pixel, score = seen[..., :2], np.clip(seen[..., 2], 0.0, 1.0)
     there = ((pixel >= 0.0) & (pixel <= np.array(size))).all(axis=-1)

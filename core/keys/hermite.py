@@ -11,6 +11,7 @@ import numpy as np
 import scipy
 
 from ..arrays import Array, IndexArray
+from ..numerics.cubic import hermite_basis
 
 BAND = 3  # bandwidth: value and slope of a key couple with those of the next
 SLOPE_WEIGHT = 0.0025
@@ -186,11 +187,4 @@ def _basis(times: Array, starts: IndexArray, ends: IndexArray, frame: IndexArray
     """(N, 4) Hermite basis: factors of the earlier key's value and slope and of the later one's."""
     begun = times[starts]
     length = (times[ends] - begun)[piece]
-    s = (times[frame] - begun[piece]) / length
-    rest = 1.0 - s
-    basis = np.empty((len(frame), 4))
-    basis[:, 0] = rest * rest * (1.0 + 2.0 * s)
-    basis[:, 1] = rest * rest * s * length
-    basis[:, 2] = s * s * (3.0 - 2.0 * s)
-    basis[:, 3] = -s * s * rest * length
-    return basis
+    return hermite_basis(length, (times[frame] - begun[piece]) / length)

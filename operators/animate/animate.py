@@ -73,15 +73,7 @@ class KEYMARK_OT_update(StagedOperator, bpy.types.Operator):
     """Make the motion of your corrections, and bake and retarget it again where that was done before"""
 
     bl_label = "Update"
-    requirements = (
-        outdated,
-        need.footage,
-        need.actor,
-        need.anything_to_follow,
-        need.all_colors,
-        need.two_keyframes,
-        need.idle,
-    )
+    requirements = (outdated, *need.RECONSTRUCTION)
 
     def start(self, scene: Scene) -> Job[list[str]]:
         return (yield from update_take(self, scene))

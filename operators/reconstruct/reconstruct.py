@@ -97,14 +97,7 @@ class KEYMARK_OT_reconstruct(PreviewedJob, bpy.types.Operator):
     """Reconstruct every frame from the footage and the keyframes; the motion becomes an Action of its own"""
 
     bl_label = "Reconstruct"
-    requirements = (
-        need.footage,
-        need.actor,
-        need.anything_to_follow,
-        need.all_colors,
-        need.two_keyframes,
-        need.idle,
-    )
+    requirements = need.RECONSTRUCTION
 
     def start(self, scene: Scene) -> "Job[tuple[SceneSession, Review]]":
         return (yield from reconstruct_take(self, scene))

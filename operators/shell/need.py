@@ -117,3 +117,4 @@ idle = of_context(
     lambda context: not job_is_running(context),
     "Another of Keymark's jobs is running; wait for it, or stop it with Esc",
 )
+RECONSTRUCTION = (footage, actor, anything_to_follow, all_colors, two_keyframes, idle)

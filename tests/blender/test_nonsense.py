@@ -5,16 +5,14 @@ from itertools import chain
 from pathlib import Path
 
 import bpy
-import numpy as np
 import pytest
 from _armatures import build_character
 from _characters import plain_character
+from _found import show_found
 from _performances import made_up_review
-from _results import made_up_frames
 from keymark.core.take.motion import Motion
 from keymark.core.take.take import Take
 from keymark.operators.bridge.fcurves import write_motion
-from keymark.operators.keyframes.found_result import add_candidate, add_match, key_matches
 from keymark.operators.reconstruct.live_preview import show_review
 from keymark.operators.shell.takes import active_take
 
@@ -34,12 +32,7 @@ def ready(opened: bpy.types.Scene, wave_motion: Motion) -> bpy.types.Scene:
     show_review(take, made_up_review())
     bpy.ops.keymark.propose_keyframes()
     bpy.ops.keymark.ignore_region(path=[{"name": "", "loc": (4.0, 4.0), "time": 0.0}] * 2, radius=3.0)
-    (frame,) = made_up_frames(wave_motion, {3: 0.4})
-    found = add_match(take, 4.0, "composed")
-    for each in frame.candidates:
-        add_candidate(found, each.posture, each.name, each.mirrored, each.confidence)
-    key_matches(take, np.array([4.0]), [frame.candidates[0].posture])
-    opened.frame_set(4)
+    show_found(opened, wave_motion)
     bpy.ops.keymark.add_character(armature=build_character(plain_character()).name)
     bpy.ops.keymark.retarget()
     bpy.context.window_manager.keymark_shelf.libraries.add()

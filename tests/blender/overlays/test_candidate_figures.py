@@ -5,12 +5,11 @@ from types import SimpleNamespace
 import bpy
 import numpy as np
 import pytest
-from _results import made_up_frames
+from _found import show_found
 from keymark.core.body.human import HUMAN
 from keymark.core.take.motion import Motion
 from keymark.operators.bridge.footage import read_camera
 from keymark.operators.keyframes.change_match import KEYMARK_OT_replace_match
-from keymark.operators.keyframes.found_result import add_candidate, add_match, key_matches
 from keymark.operators.overlays import tools, views
 from keymark.operators.overlays.drawing import Label, Stroke, candidate_icon
 from keymark.operators.shell.footage_view import FootageView
@@ -23,12 +22,7 @@ Group = bpy.types.PropertyGroup
 @pytest.fixture
 def match(opened: bpy.types.Scene, wave_motion: Motion) -> Group:
     take = active_take(opened)
-    (frame,) = made_up_frames(wave_motion, {3: 0.4})
-    found = add_match(take, 4.0, "composed")
-    for each in frame.candidates:
-        add_candidate(found, each.posture, each.name, each.mirrored, each.confidence)
-    key_matches(take, np.array([4.0]), [frame.candidates[0].posture])
-    opened.frame_set(4)
+    show_found(opened, wave_motion)
     return take.matching.matches[0]
 
 
